@@ -8,7 +8,7 @@ from contextlib import suppress
 
 from stiction.command.output_streams import say
 from stiction.config.units import from_si
-from stiction.contact.air import DRY
+from stiction.contact.air import DRY, DRY_AIR, Air
 from stiction.estimate.answer import CHOSEN, FRACTIONS, Estimate, answer
 from stiction.estimate.force import Stopper
 from stiction.estimate.length import Impossible, NotLearnt
@@ -48,7 +48,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--contact", type=float, nargs=2, metavar="UM", help=words)
     words = "thickness and relative permittivity of the dielectric"
     parser.add_argument("--dielectric", type=float, nargs=2, metavar=("NM", "PERMITTIVITY"), help=words)
-    parser.add_argument("--rh", type=_humidity, nargs="+", metavar="RH", help="relative humidities, such as 0.45")
+    words = "relative humidities, such as 0.45, or dry"
+    parser.add_argument("--rh", type=_humidity, nargs="+", metavar="RH", help=words)
     parser.add_argument("--touchdowns", type=int, default=1, metavar="N", help="number of touchdowns (default: 1)")
 
 
@@ -159,14 +160,15 @@ def _stated(arguments):
 def file_of(arguments: argparse.Namespace) -> str:
     """File with the device of some options, for a run."""
     entry, device = _stated(arguments)
-    air, kind = {"humidities": arguments.rh}, "stopper" if arguments.contact else "cantilever"
+    kind = "stopper" if arguments.contact else "cantilever"
+    air = {"humidities": [Air(each).name for each in arguments.rh]}
     pair = {"beam": "Mine", "substrate": OPPOSITE, "gap_um": arguments.gap or _GAP} | air
     return "\n".join(
         (
             "run: {pairs: [mine], studies: []}",
             f"surfaces:\n  Mine: {_in_yaml({'like': LIKE} | entry)}",
             f"pairs:\n  mine: {_in_yaml(pair)}",
-            f"devices:\n  Mine: {_in_yaml({'kind': kind, 'pair': 'mine'} | device)}",
+            f"devices:\n  Mine: {_in_yaml({'kind': kind, 'pair': 'mine'} | device | air)}",
         )
     )
 
@@ -179,9 +181,9 @@ def _in_yaml(entry):
 def _humidity(word):
     """Relative humidity of a word, which can be that for dry air."""
     try:
-        return 0.0 if word == DRY else float(word)
+        return DRY_AIR.humidity if word == DRY else float(word)
     except ValueError:
-        raise argparse.ArgumentTypeError(f"must be numbers above 0 and below 1, got {word}") from None
+        raise argparse.ArgumentTypeError(f"must be {DRY}, or numbers above 0 and below 1, got {word}") from None
 
 
 #: Options that a device needs, those of other devices, and these.
@@ -205,7 +207,7 @@ def shown(found: Estimate) -> Iterator[str]:
     """Lines of an answer."""
     asked, (name, symbol) = found.question, _WORDS[found.question.unit]
     left_open = ", typical surfaces stand for what is not stated" * any(asked.members)
-    yield f"{asked.name}: estimate at RH {found.humidity:g}, the worst air; stated inputs count as exact{left_open}"
+    yield f"{asked.name}: estimate {Air(found.humidity).where}, the worst air; stated inputs count as exact{left_open}"
     yield f"  stuck            {f'{name} [{symbol}]':<15}90 %            95 %"
     for row in found.rows:
         both = ([_number(end, asked) for end in ends] for ends in row.intervals.values())

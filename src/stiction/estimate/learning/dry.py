@@ -57,25 +57,26 @@ _NARROW = to_si(12, "um")
 class DryEffort(TrainingEffort):
     """Points of a set in dry air. Each has some Hamaker constants as states, and full contact at the first of them."""
 
-    strips: tuple[int, int] = (20, 60)  #: in full contact, at each slope of tips and under stoppers
+    strips: tuple[int, int] = (20, 32)  #: in full contact, at each slope of tips and under stoppers
+    stoppers: int = 1  #: number of the points that have stoppers
 
 
-def _effort(name, points, states, patches, strips):
+def _effort(name, points, stoppers, states, patches, strips):
     """Effort of a set, with the first points of a set in humid air."""
     of = training.SETS[name]
-    return DryEffort(points, of.seed, of.law, of.tips, of.tips_by_width, states, 1, patches, strips)
+    return DryEffort(points, of.seed, of.law, of.tips, of.tips_by_width, states, 1, patches, strips, stoppers)
 
 
 #: Sets of points by name, as in humid air.
 SETS = {
-    "learn_any": _effort("learn_any", 32, 2, 100, (8, 32)),
-    "learn_typical": _effort("learn_typical", 36, 2, 100, (8, 32)),
-    "decide_typical": _effort("decide_typical", 20, 1, 200, (20, 32)),
-    "decide_any": _effort("decide_any", 20, 1, 200, (20, 32)),
-    "check_paper": _effort("check_paper", 6, 1, 200, (20, 32)),
-    "check_typical": _effort("check_typical", 12, 1, 200, (20, 32)),
-    "check_any": _effort("check_any", 12, 1, 200, (20, 32)),
-    "control": _effort("control", 1, 1, 3, (2, 12)),
+    "learn_any": _effort("learn_any", 32, 60, 2, 200, (8, 32)),
+    "learn_typical": _effort("learn_typical", 36, 70, 2, 200, (8, 32)),
+    "decide_typical": _effort("decide_typical", 20, 40, 1, 200, (20, 32)),
+    "decide_any": _effort("decide_any", 22, 40, 1, 200, (20, 32)),
+    "check_paper": _effort("check_paper", 6, 6, 1, 200, (20, 32)),
+    "check_typical": _effort("check_typical", 12, 12, 1, 200, (20, 32)),
+    "check_any": _effort("check_any", 12, 12, 1, 200, (20, 32)),
+    "control": _effort("control", 1, 1, 1, 3, (2, 12)),
 }
 
 

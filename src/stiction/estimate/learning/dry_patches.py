@@ -30,6 +30,8 @@ from stiction.stages.devices.contact_names import patch_of
 
 #: Folder of the patches beside the sets of the tips.
 FOLDER = f"{dry.FOLDER}/{patches.FOLDER}"
+#: Sets of points with stoppers by name.
+SETS = {name: replace(effort, points=effort.stoppers) for name, effort in dry.SETS.items()}
 #: Width of strips in full contact [m]. On B2 and Sub1, strips of 3, 6 and 30 µm have ratios of 1.46, 1.40 and 1.43
 #: (± 0.05, 0.05, 0.15), and on a rougher pair 1.22, 1.18 and 1.29 (± 0.04, 0.05, 0.08).
 _WIDTH = to_si(3, "um")
@@ -52,7 +54,7 @@ def forces_of(plan: Plan, name: str, number: int) -> np.ndarray:
     """Pull-off pressures of the patches of a point of a set, on summits in dry air (n,) [Pa]."""
     patch = patch_of(plan, Case(case_id(patches.DEVICE, DRY_AIR.humidity)))
     at = At(**{key: str(value) for key, value in patch._asdict().items()})
-    settings = replace(in_si(Settings, GROUND.settings(plan, at, dry.SETS[name].patches)), seed=dry.SETS[name].seed)
+    settings = replace(in_si(Settings, GROUND.settings(plan, at, SETS[name].patches)), seed=SETS[name].seed)
     found = contact.compute(surfaces_of(plan), f"estimate{number}", "NG", settings)
     return curves.pull_offs(found, DRY_AIR.humidity, water_of(plan))
 
@@ -60,7 +62,7 @@ def forces_of(plan: Plan, name: str, number: int) -> np.ndarray:
 def change_of(plan: Plan, name: str, number: int) -> dict[str, float]:
     """Ratio of the mean pull-off in full contact to that on summits, and power of its scatter, NaN if not found."""
     settings = in_si(full_contact.Settings, full_contact.settings_in_dry_air(plan, At(pair=PAIR)))
-    own = replace(settings, strips=dry.SETS[name].strips[1], most=0, seed=dry.SETS[name].seed)
+    own = replace(settings, strips=SETS[name].strips[1], most=0, seed=SETS[name].seed)
     try:
         study = full_contact.compute(
             surfaces_of(plan), f"estimate{number}", replace(own, beam=replace(own.beam, width=_WIDTH))
@@ -75,7 +77,7 @@ def change_of(plan: Plan, name: str, number: int) -> dict[str, float]:
 
 def computed(point: Point, name: str, valid: dict[str, Any]) -> dict[str, Any]:
     """Numbers of one point of a set."""
-    sides = patches.sides_of(point, dry.SETS[name].seed, dry.SETS[name].law)
+    sides = patches.sides_of(point, SETS[name].seed, SETS[name].law)
     constants = dry.constants(point, name)
     plans = [dry.with_constant(patches.plan_of(point, sides, valid), each) for each in constants]
     forces = np.array([forces_of(plan, name, point.number) for plan in plans], np.float32)
@@ -85,10 +87,10 @@ def computed(point: Point, name: str, valid: dict[str, Any]) -> dict[str, Any]:
 
 def control() -> dict[str, list[float]]:
     """Pull-off pressures of a few patches and the ratio of some strips, as `stiction.estimate.learning.dry.control`."""
-    (point,), name = dry.SETS["control"].all, "control"
+    (point,), name = SETS["control"].all, "control"
     numbers = computed(point, name, base())
     return {"forces": numbers["forces"].ravel().tolist(), "ratio": [numbers["ratio"]]}
 
 
 if __name__ == "__main__":
-    main(base(), computed, Path(sys.argv[1]) / FOLDER, dry.SETS, *sys.argv[2:])
+    main(base(), computed, Path(sys.argv[1]) / FOLDER, SETS, *sys.argv[2:])

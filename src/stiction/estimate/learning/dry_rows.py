@@ -53,7 +53,7 @@ def rows_of_patches(folder: Path, name: str, modulus: float) -> DesignRows:
     """Rows of all patches of a set on summits."""
     return rows_of(
         (point.number, patch.coordinates, _relative(pressures, patch))
-        for point, numbers in stored(folder / dry_patches.FOLDER, name, dry.SETS)
+        for point, numbers in stored(folder / dry_patches.FOLDER, name, dry_patches.SETS)
         for patch, pressures in zip(patches_of(point, numbers, modulus), numbers["forces"], strict=True)
     )
 
@@ -76,7 +76,7 @@ def rows_of_full(folder: Path, name: str, modulus: float) -> DesignRows:
 
 def rows_of_ratios(folder: Path, name: str, modulus: float) -> DesignRows:
     """Rows of the logarithm of the ratio, and of the power, of the change of pull-off forces by full contact."""
-    every = stored(folder / dry_patches.FOLDER, name, dry.SETS)
+    every = stored(folder / dry_patches.FOLDER, name, dry_patches.SETS)
     found = [(point, numbers) for point, numbers in every if np.isfinite(numbers["ratio"])]
     coordinates = np.array([patches_of(*one, modulus)[0].coordinates for one in found])
     changes = [change_of(numbers) for _, numbers in found]
@@ -96,7 +96,7 @@ def tested(folder: Path, sets: str, modulus: float, score: float, processes: Pro
 
 def tested_forces(folder: Path, sets: str, modulus: float, score: float, processes: Processes) -> Iterator[Tested]:
     """Reciprocals of forces of some sets, as `tested`."""
-    for point, numbers in stored(folder / dry_patches.FOLDER, sets, dry.SETS):
+    for point, numbers in stored(folder / dry_patches.FOLDER, sets, dry_patches.SETS):
         if np.isfinite(numbers["ratio"]):
             patch, pressures = patches_of(point, numbers, modulus)[0], numbers["forces"][0].astype(float)
             changed = change_of(numbers).of(pressures)(pressures)

@@ -15,7 +15,9 @@ import numpy as np
 from stiction.config.reading import read
 from stiction.config.units import from_si
 from stiction.estimate.answer import CONFIDENCES, answer, difficulty
+from stiction.estimate.learning import dry_rows
 from stiction.estimate.learning.design import SurfaceLaw
+from stiction.estimate.learning.dry import CONSTANTS
 from stiction.estimate.learning.errors import coverage, noise_of, scores, tested, tested_forces
 from stiction.estimate.length import NotLearnt
 from stiction.estimate.question import questions
@@ -37,28 +39,33 @@ SETS = {
 _HEAD = "| surfaces | number | refused | mean [%] | rms [%] | largest [%] | half [%] | inside 90 % | inside 95 % |"
 #: Words before both tables of drawn surfaces.
 _OF_LENGTHS = (
-    "`stiction estimate` knows cantilevers and stoppers of polysilicon in humid air at 300 K, and refuses all else. "
-    "A bridge needs energies and finite elements of its middle as well. Dry air has no film, and full contact of its "
-    "own. Below are lengths for 1 in 1000 beside those of drawn surfaces that it has not learnt, with tips changed by "
-    "full contact as in a run, on strips of at most 12 µm. The error is the logarithm of the latter over the estimate, "
-    "negative on the unsafe side. Half: median of half of the interval of 90 %. In brackets: 95 % range of the share "
-    "inside."
+    "`stiction estimate` knows cantilevers and stoppers of polysilicon, in humid air at 300 K and in dry air, and "
+    "refuses all else. A bridge needs energies and finite elements of its middle as well. Below are lengths for 1 in "
+    "1000 beside those of drawn surfaces that it has not learnt, with tips changed by full contact as in a run, on "
+    "strips of at most 12 µm. The error is the logarithm of the latter over the estimate, negative on the unsafe side. "
+    "Half: median of half of the interval of 90 %. In brackets: 95 % range of the share inside."
 )
 _OF_FORCES = (
     "The same for forces of stoppers, of the logarithm of 1/force, so that it is negative on the unsafe side here too:"
 )
+_IN_DRY_AIR = (
+    "Lengths in dry air, at Hamaker constants of {:g} to {:g} zJ, beside tips changed by twenty strips in full contact "
+    "with the error that a run would reach:"
+)
+_FORCES_IN_DRY_AIR = "Forces in dry air, beside the mean of 60 narrow strips in full contact:"
 
 
 def lines(folder: Path) -> Iterator[str]:
     """Lines of the tables of drawn surfaces."""
-    table, *tips = known()
-    stoppers = table["stoppers"]
-    of_forces = [Surrogate(**stoppers[name]) for name in ("forces", "full")]
-    for words, test, errors, processes in (
-        (_OF_LENGTHS, tested, table, tips),
-        (_OF_FORCES, tested_forces, stoppers, of_forces),
+    table, dry = content(), content()["dry"]
+    for words, test, errors, first in (
+        (_OF_LENGTHS, tested, table, "tips"),
+        (_OF_FORCES, tested_forces, table["stoppers"], "forces"),
+        (_IN_DRY_AIR.format(*CONSTANTS), dry_rows.tested, dry, "tips"),
+        (_FORCES_IN_DRY_AIR, dry_rows.tested_forces, dry["stoppers"], "forces"),
     ):
         yield from (words, "", _HEAD, "|---|---|---|---|---|---|---|---|---|")
+        processes = [Surrogate(**errors[name]) for name in (first, "full")]
         for name, of_set in SETS.items():
             learnt = table["modulus"], errors["tested_score"], lambda _, of=processes: of
             if found := list(test(folder, name, *learnt)):

@@ -81,7 +81,7 @@ SIZES = {
 _TITLE = "The estimate at once beside the run"
 _MISSING = "the estimate refuses this air, or too few of the simulated devices stick for a size"
 #: Units of the inputs of the estimate, for those that have one.
-_SIZES = dict.fromkeys(("thickness", "gap", "width"), "um")
+_SIZES = dict.fromkeys(("thickness", "gap", "width"), "um") | {"hamaker_constant": "zJ"}
 _OF_SIDES = {"rms": "nm", "skewness": "", "kurtosis": "", "plateau": "nm4", "floor": "nm4"}
 _OF_SIDES |= dict.fromkeys(("corner", "cutoff"), "rad_per_um")
 #: Words by whether the size of the run is inside the interval of the estimate.

@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from stiction.contact.air import humid
+from stiction.config.units import from_si
 from stiction.estimate.answer import CONFIDENCES, in_one_air
 from stiction.estimate.complete import question_of
+from stiction.estimate.dry import POLYSILICON
 from stiction.estimate.force import Stopper
 from stiction.estimate.length import NotLearnt
 from stiction.estimate.question import Question
@@ -60,6 +61,7 @@ class AskedCantilever:
     thickness: float  #: [m]
     gap: float  #: [m]
     width: float  #: [m]
+    hamaker_constant: float = POLYSILICON  #: of the solids in dry air [J]
 
     @property
     def sides(self) -> list[AskedSurface]:
@@ -69,12 +71,13 @@ class AskedCantilever:
     @property
     def sizes(self) -> dict[str, Any]:
         """Variables of its own numbers."""
-        return {name: ((), getattr(self, name)) for name in ("thickness", "gap", "width")}
+        return {name: ((), getattr(self, name)) for name in ("thickness", "gap", "width")} | _own(self)
 
     def question(self, air: float) -> Question:
         """Question about one air [-]."""
         surfaces, exact = tuple(side.heights for side in self.sides), ({}, {})
-        return Question("", surfaces, exact, (air,), self.thickness, self.gap, self.width)
+        sizes = self.thickness, self.gap, self.width
+        return Question("", surfaces, exact, (air,), *sizes, constant=self.hamaker_constant)
 
 
 @dataclass(frozen=True)
@@ -92,6 +95,7 @@ class AskedStopper:
     beam: AskedSurface
     substrate: AskedSurface
     contact: tuple[float, float]  #: sides of its area [m]
+    hamaker_constant: float = POLYSILICON  #: of the solids in dry air [J]
 
     @property
     def sides(self) -> list[AskedSurface]:
@@ -101,11 +105,18 @@ class AskedStopper:
     @property
     def sizes(self) -> dict[str, Any]:
         """Variables of its own numbers."""
-        return {"contact": ("direction", list(self.contact)), "direction": ["x", "y"]}
+        return {"contact": ("direction", list(self.contact)), "direction": ["x", "y"]} | _own(self)
 
     def question(self, air: float) -> Stopper:
         """Question about one air [-]."""
-        return Stopper("", tuple(side.heights for side in self.sides), ({}, {}), (air,), self.contact)
+        surfaces = tuple(side.heights for side in self.sides)
+        return Stopper("", surfaces, ({}, {}), (air,), self.contact, constant=self.hamaker_constant)
+
+
+def _own(asked):
+    """Variable of a Hamaker constant that differs from that of polysilicon."""
+    own = asked.hamaker_constant
+    return {} if own == POLYSILICON else {"hamaker_constant": ((), own, {"units": "J"})}
 
 
 @dataclass(frozen=True)
@@ -178,10 +189,8 @@ def estimated(plan: Any, stage: str) -> list[str]:
 
 
 def stage_of(plan: Any, device: str) -> str | None:
-    """Stage of the estimate of a device, none of a kind that the estimate does not know, and in dry air alone."""
+    """Stage of the estimate of a device, none of a kind that the estimate does not know."""
     kind = plan.devices.kind(device)
-    if not humid(plan.devices.sections[device]["humidities"]):
-        return None
     if kind.has_tip:
         return LENGTHS
     return FORCES if kind.is_patch else None
@@ -204,11 +213,14 @@ def _settings(of):
     def settings(plan, at):
         """Settings of a device."""
         section = plan.config["devices"][at.device]
-        question = question_of(plan.config, at.device, section | {"humidities": humid(section["humidities"])})
+        question = question_of(plan.config, at.device, section)
         if isinstance(question, NotLearnt):
             return {"refused": str(question)}
         pair, surfaces = plan.config["pairs"][section["pair"]], plan.config["surfaces"]
-        return {"asked": select(of, section | {side: surfaces[pair[side]] for side in SIDES})}
+        sides = {side: surfaces[pair[side]] for side in SIDES}
+        has_material = any("material" in side for side in sides.values())
+        own = {"hamaker_constant_zJ": round(from_si(question.constant, "zJ"), 9)} if has_material else {}
+        return {"asked": select(of, section | sides | own)}
 
     return settings
 
