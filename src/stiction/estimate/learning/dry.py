@@ -52,6 +52,9 @@ _MATERIAL = "M"
 #: Width of strips in full contact [m], as in humid air.
 _NARROW = to_si(12, "um")
 
+#: Most tips of a set where their width asks for no more.
+_MOST = 100
+
 
 @dataclass(frozen=True)
 class DryEffort(TrainingEffort):
@@ -64,7 +67,8 @@ class DryEffort(TrainingEffort):
 def _effort(name, points, stoppers, states, patches, strips):
     """Effort of a set, with the first points of a set in humid air."""
     of = training.SETS[name]
-    return DryEffort(points, of.seed, of.law, of.tips, of.tips_by_width, states, 1, patches, strips, stoppers)
+    tips = min(of.tips, _MOST)
+    return DryEffort(points, of.seed, of.law, tips, of.tips_by_width, states, 1, patches, strips, stoppers)
 
 
 #: Sets of points by name, as in humid air.

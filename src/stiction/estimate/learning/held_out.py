@@ -17,7 +17,7 @@ from stiction.config.units import from_si
 from stiction.estimate.answer import CONFIDENCES, answer, difficulty
 from stiction.estimate.learning import dry_rows
 from stiction.estimate.learning.design import SurfaceLaw
-from stiction.estimate.learning.dry import CONSTANTS
+from stiction.estimate.learning.dry import CONSTANTS, DryEffort
 from stiction.estimate.learning.errors import coverage, noise_of, scores, tested, tested_forces
 from stiction.estimate.length import NotLearnt
 from stiction.estimate.question import questions
@@ -49,20 +49,20 @@ _OF_FORCES = (
     "The same for forces of stoppers, of the logarithm of 1/force, so that it is negative on the unsafe side here too:"
 )
 _IN_DRY_AIR = (
-    "Lengths in dry air, at Hamaker constants of {:g} to {:g} zJ, beside tips changed by twenty strips in full contact "
-    "with the error that a run would reach:"
+    "Lengths in dry air, at Hamaker constants of {:g} to {:g} zJ, beside tips changed by {} strips in full contact at "
+    "each slope, with the error that a run would reach:"
 )
-_FORCES_IN_DRY_AIR = "Forces in dry air, beside the mean of 60 narrow strips in full contact:"
+_FORCES_IN_DRY_AIR = "Forces in dry air, beside patches changed by {} strips of 3 µm in full contact:"
 
 
 def lines(folder: Path) -> Iterator[str]:
     """Lines of the tables of drawn surfaces."""
-    table, dry = content(), content()["dry"]
+    table, dry, (of_tips, of_patches) = content(), content()["dry"], DryEffort.strips
     for words, test, errors, first in (
         (_OF_LENGTHS, tested, table, "tips"),
         (_OF_FORCES, tested_forces, table["stoppers"], "forces"),
-        (_IN_DRY_AIR.format(*CONSTANTS), dry_rows.tested, dry, "tips"),
-        (_FORCES_IN_DRY_AIR, dry_rows.tested_forces, dry["stoppers"], "forces"),
+        (_IN_DRY_AIR.format(*CONSTANTS, of_tips), dry_rows.tested, dry, "tips"),
+        (_FORCES_IN_DRY_AIR.format(of_patches), dry_rows.tested_forces, dry["stoppers"], "forces"),
     ):
         yield from (words, "", _HEAD, "|---|---|---|---|---|---|---|---|---|")
         processes = [Surrogate(**errors[name]) for name in (first, "full")]
@@ -79,10 +79,10 @@ def _of_noise(folder, score):
     if len(noise := noise_of(folder, f"decide_{SurfaceLaw.TYPICAL}", score)):
         rms, exact = 100 * np.sqrt((noise**2).mean(axis=0)), 100 * _HALF * np.median(noise[:, 0])
         yield (
-            f"Of the errors of lengths in the first row, {rms[0]:.1f} % rms are noise of the eight strips in full "
-            f"contact of a run, and {rms[1]:.1f} % of the drawn tips, by the bootstrap. An exact estimate would still "
-            f"have half an interval of {exact:.0f} %, for it errs beside a run that errs. Intervals are in proportion "
-            "to the scatter of the tips: they are narrow in wet air and on smooth surfaces."
+            f"Of the errors of lengths in the first row of all, {rms[0]:.1f} % rms are noise of the eight strips in "
+            f"full contact of a run, and {rms[1]:.1f} % of the drawn tips, by the bootstrap. An exact estimate would "
+            f"still have half an interval of {exact:.0f} %, for it errs beside a run that errs. Intervals are in "
+            "proportion to the scatter of the tips: they are narrow in wet air and on smooth surfaces."
         )
         yield ""
 
