@@ -122,7 +122,7 @@ def sign_of(answer: Answer) -> tuple[str, str]:
     if answer.verdict is Verdict.NONE:
         return ("bad", NO_NUMBER) if is_forbidden(answer) else ("open", "Not known")
     if answer.verdict is Verdict.SAFE and not answer.is_enough_between:
-        return "open", f"{_SIGNS[answer.sought.name][Verdict.SAFE][1]} in these airs, not between them"
+        return "open", f"{_SIGNS[answer.sought.name][Verdict.SAFE][1]} in these airs, perhaps not between them"
     return _SIGNS[answer.sought.name][answer.verdict]
 
 
@@ -147,9 +147,13 @@ def to_build(answer: Answer) -> str:
 
 
 def stricter(answer: Answer) -> list[str]:
-    """Stricter sizes of airs between the stated ones, and of what nothing that is stated asks for."""
+    """Stricter sizes of airs between the stated ones, which are interpolated, and of what nothing stated asks for."""
     at = answer.between
-    sizes = [f"{answer.in_words(at.size)} between these airs (RH {at.humidity:.2g})"] if at else []
+    sizes = (
+        [f"about {answer.in_words(at.size)} between these airs (interpolated: state RH {at.humidity:.2g})"]
+        if at
+        else []
+    )
     return sizes + [f"{answer.in_words(one.size)} {_unless(one)}" for one in answer.unasked]
 
 

@@ -214,7 +214,7 @@ def _beside(answer, size):
     variables = {}
     if answer.between:
         variables |= {"between_humidity": ((), answer.between.humidity, {"units": "1"})}
-        variables |= {"between_size": ((), answer.between.size, size)}
+        variables |= {f"between_{name}": ((), getattr(answer.between, name), size) for name in ("size", "safe")}
     if answer.unasked:
         variables |= {f"unasked_{name}": ("unasked", [getattr(one, name) for one in answer.unasked]) for name in _NAMED}
         variables |= {"unasked_size": ("unasked", [one.size for one in answer.unasked], size)}
@@ -303,7 +303,9 @@ def answer_of(dataset: xr.Dataset) -> Answer:
 
 def _between(dataset):
     """Stricter size of an air between the stated ones of a dataset, none where it has none."""
-    return Between(float(dataset.between_humidity), float(dataset.between_size)) if "between_size" in dataset else None
+    if "between_size" not in dataset:
+        return None
+    return Between(*(float(dataset[f"between_{name}"]) for name in ("humidity", "size", "safe")))
 
 
 def _stays(dataset):
