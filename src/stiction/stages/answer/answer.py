@@ -216,8 +216,10 @@ def _beside(answer, size):
         variables |= {"between_humidity": ((), answer.between.humidity, {"units": "1"})}
         variables |= {"between_size": ((), answer.between.size, size)}
     if answer.unasked:
-        variables |= {f"unasked_{name}": ("unasked", [getattr(one, name) for one in answer.unasked]) for name in _NAMED}
-        variables |= {"unasked_size": ("unasked", [one.size for one in answer.unasked], size)}
+        variables |= {
+            f"unasked_{name}": ("unasked", [getattr(limit, name) for limit in answer.unasked]) for name in _NAMED
+        }
+        variables |= {"unasked_size": ("unasked", [limit.size for limit in answer.unasked], size)}
     return variables
 
 

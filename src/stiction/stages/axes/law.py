@@ -222,12 +222,7 @@ def _numbers(entry, quantities):
     places_in_errors = [errors.quantities.index(name) for name in quantities]
     covariance[np.ix_(places, places)] = errors.covariance[np.ix_(places_in_errors, places_in_errors)]
     rounded = [[_rounded(number) for number in row] for row in covariance]
-    return {"values": [_exactly(number) for number in values], "covariance": rounded}
-
-
-def _exactly(value):
-    """Number of Python with digits enough for those of a stated setting."""
-    return float(f"{value:.14g}")
+    return {"values": [float(f"{number:.14g}") for number in values], "covariance": rounded}
 
 
 def in_order(plan: Any, name: str) -> list[str]:

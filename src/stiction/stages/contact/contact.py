@@ -56,13 +56,10 @@ def compute_each(
     datasets = [layout(*curves, rough.distances, samples) for curves, rough in zip(contacts, pairs, strict=True)]
     datasets = [_displaced(*each, streams) for each in zip(datasets, pairs, strict=True)]
     if settings.probe:
-        return [_under_probe(*each) for each in zip(datasets, pairs, strict=True)]
+        # The rms is that of z₁ + z₂, which the bearing area does not show.
+        rms = [((), pair.rms, {"units": "m"}) for pair in pairs]
+        return [each.assign(rms=of_pair) for each, of_pair in zip(datasets, rms, strict=True)]
     return [tip_dataset(*each) for each in zip(datasets, pairs, strict=True)] if settings.tilt else datasets
-
-
-def _under_probe(contact, pair):
-    """Contact with the rms of z₁ + z₂, which its bearing area does not show."""
-    return contact.assign(rms=((), pair.rms, {"units": "m"}))
 
 
 def _displaced(contact, pair, streams):

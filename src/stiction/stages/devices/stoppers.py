@@ -231,7 +231,7 @@ def layout(settings: Settings, of_device: np.ndarray, axis: np.ndarray, along: n
         {
             "pull_off": (("humidity", "sample"), of_device, newton),
             "full_contact_error": ("humidity", _ratio_errors(changes), of_force),
-            "full_contact_power_error": ("humidity", [one.power_error / one.power for one in changes], of_power),
+            "full_contact_power_error": ("humidity", [each.power_error / each.power for each in changes], of_power),
             "stuck": (("bound", "humidity"), _stuck(of_device, settings, changes), of_band),
             "safe_force": (("part", "humidity", "share"), safe, newton),
             "basis": ("share", basis),
