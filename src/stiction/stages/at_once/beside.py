@@ -127,28 +127,27 @@ def compute(lengths: Mapping[float, xr.Dataset], settings: Settings) -> xr.Datas
         in_either = of_air.sel(shape=EITHER)
         error = np.hypot(in_either.beams_error, in_either.surfaces_error.fillna(0))
         runs[air] = in_either.estimate.where(np.isfinite(in_either.estimate)), error
-    return _beside(runs, settings, "length", "m")
+    return _beside(runs, settings, "length")
 
 
 def compute_stopper(stopper: xr.Dataset, settings: SettingsOfStopper) -> xr.Dataset:
     """Forces of a run and of the estimate, by humidity and fraction of stuck devices."""
     forces = stopper.safe_force
     runs = {air: tuple(forces.sel(humidity=air, part=["estimate", "error"])) for air in forces.humidity.values}
-    return _beside(runs, settings, "force", "N")
+    return _beside(runs, settings, "force")
 
 
-def _beside(runs: Runs, settings: Settings | SettingsOfStopper, name: str, unit: str) -> xr.Dataset:
-    """Sizes of a run, with their name and unit, and of the estimate."""
+def _beside(runs: Runs, settings: Settings | SettingsOfStopper, name: str) -> xr.Dataset:
+    """Sizes of a run, with their name, and of the estimate."""
     shares = next(iter(runs.values()))[0].share.values
     refused, estimates = zip(*(_estimated(settings, air, shares) for air in runs), strict=True)
-    over, of_size, none = ("humidity", "share"), {"units": unit}, {"units": "1"}
+    over = ("humidity", "share")
     sizes, errors = zip(*runs.values(), strict=True)
     columns = {name: sizes, f"{name}_error": errors}
     columns |= dict(zip(("estimate", "low", "high"), np.moveaxis(np.array(estimates), 2, 0), strict=True))
     dataset = xr.Dataset(
-        {name: (over, np.array(values), of_size) for name, values in columns.items()}
-        | {"refused": ("humidity", list(refused))},
-        {"humidity": ("humidity", list(runs), none), "share": ("share", shares, none)},
+        {name: (over, np.array(values)) for name, values in columns.items()} | {"refused": ("humidity", list(refused))},
+        {"humidity": ("humidity", list(runs)), "share": ("share", shares)},
     )
     return dataset.assign(_inputs_of(settings.asked) if settings.asked else {})
 
