@@ -19,19 +19,19 @@ def of_lengths(
     lengths: Mapping[float, xr.Dataset], charts: Mapping[float, xr.Dataset], device: DesignedBeam, share: float
 ) -> dict[float, float]:
     """Simulated limits of a beam in its own airs and, if its chart has the beam itself, in those of the chart [m]."""
-    own = {humidity: dataset.isel(shape=-1) for humidity, dataset in lengths.items()}
+    in_airs = {humidity: dataset.isel(shape=-1) for humidity, dataset in lengths.items()}
     at = {"thickness": device.thickness, "gap": device.gap}
     for humidity, chart in charts.items():
         if all(np.isclose(chart[name], size, rtol=1e-9).any() for name, size in at.items()):
-            own[humidity] = chart.isel(shape=-1).sel(at, method="nearest")
-    return {humidity: float(dataset.safe_length.sel(share=share)) for humidity, dataset in own.items()}
+            in_airs[humidity] = chart.isel(shape=-1).sel(at, method="nearest")
+    return {humidity: float(dataset.safe_length.sel(share=share)) for humidity, dataset in in_airs.items()}
 
 
 def of_forces(stopper: xr.Dataset, share: float) -> dict[float, float]:
     """Simulated limits of a stopper in its own airs and along the fine axis of humidities [N]."""
-    along, own = stopper.safe_force_along.sel(share=share), stopper.safe_force.sel(part="safe", share=share)
-    limits = zip((along.axis, along), (own.humidity, own), strict=True)
-    humidities, forces = (np.concatenate([one.values for one in pair]) for pair in limits)
+    along, at_airs = stopper.safe_force_along.sel(share=share), stopper.safe_force.sel(part="safe", share=share)
+    limits = zip((along.axis, along), (at_airs.humidity, at_airs), strict=True)
+    humidities, forces = (np.concatenate([array.values for array in pair]) for pair in limits)
     return dict(zip(map(float, humidities), map(float, forces), strict=True))
 
 
