@@ -7,11 +7,12 @@ import pandas as pd
 import xarray as xr
 
 from stiction.answer.data import Answer, Cause, Probability
+from stiction.answer.sought import LENGTH
 from stiction.contact.air import Air
 from stiction.plan.names import by_name
 from stiction.report.answer import places, words
 from stiction.report.answer.judged import judged
-from stiction.report.format import MISSING, number
+from stiction.report.format import MISSING, bounding, number, safe_size
 from stiction.report.table import Table, table_stage
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.end_states import END_STATES
@@ -32,13 +33,13 @@ def devices(answers: Mapping[str, Answer]) -> Table:
         "device": (str, "device"),
         "verdict": (str, "sign"),
         "stated": (_size, "size", "unit"),
-        "to build": (_size, "to_build", "unit"),
+        "to build": (_bound, "to_build", "unit"),
         "but": (str, "stricter"),
         "P(stuck) at the stated size": (str, "stuck"),
         "at most 1 in": (lambda share: number(1 / share, "g"), "share"),
         "largest step": (str, "largest_step"),
         "measure first": (str, "measure"),
-        "then to build": (_size, "if_measured", "unit"),
+        "then to build": (_bound, "if_measured", "unit"),
         "no number because of": (str, "forbidden"),
     }
     rows, caption = [_row(answer) for answer in answers.values()], _CAPTION
@@ -141,12 +142,17 @@ def _size(value, unit):
     return number(value, ".4g") + (f" {unit}" if np.isfinite(value) else "")
 
 
+def _bound(value, unit):
+    """Size to build with its unit, rounded to its safe side: lengths down, forces up."""
+    return bounding(value, 3, unit != LENGTH.shown) + (f" {unit}" if np.isfinite(value) else "")
+
+
 def steps(answer: Answer) -> pd.DataFrame:
     """Steps from the estimate to the size to build, for reading."""
     return pd.DataFrame(
         {
             "step": words.CAUSES[step.cause][0] + " (not stated)" * (not step.stated),
-            f"{answer.sought.name} after it": answer.in_words(step.size),
+            f"{answer.sought.name} after it": safe_size(step.size, answer.sought),
             "change [%]": number(100 * (step.factor - 1), "+.1f") if k else "",
             "air": Air(step.humidity).words,
         }

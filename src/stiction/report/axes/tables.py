@@ -6,10 +6,11 @@ from itertools import product
 import numpy as np
 import xarray as xr
 
+from stiction.answer.sought import LENGTH
 from stiction.plan.names import by_name
 from stiction.report.axes import process, roughness
 from stiction.report.axes.axis import axes_of
-from stiction.report.format import UM, with_band, with_error
+from stiction.report.format import UM, bounding, with_band, with_error
 from stiction.report.table import DEVICE, Table, table_stage, with_list
 from stiction.stages.axes.law import law_inputs
 from stiction.stages.axes.margins import PARTS
@@ -151,7 +152,7 @@ _OF_ROUGHNESS = DEVICE | {
     KURTOSIS: (_kurtosis, KURTOSIS),
     "p": ("g", "share"),
     "unit": (str, "unit"),
-    "simulated limit": (".4g", "safe"),
+    "simulated limit": (lambda safe, unit: bounding(safe, 4, unit != LENGTH.shown), "safe", "unit"),
     "estimate": (with_error, "estimate", "estimate_se"),
     "required": ("g", "required"),
     **_STUCK,

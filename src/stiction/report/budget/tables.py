@@ -12,7 +12,7 @@ from stiction.devices.limits.limit import Limit
 from stiction.devices.risk import Basis
 from stiction.estimates import mean_with_error
 from stiction.plan.names import by_name
-from stiction.report.format import UN, fraction_with_band, humidity_text, number, signed, with_error
+from stiction.report.format import UN, bounding, fraction_with_band, humidity_text, number, signed, with_error
 from stiction.report.limits import words
 from stiction.report.model_error import column
 from stiction.report.model_error import sentences as model_errors
@@ -143,8 +143,8 @@ def _columns_of_stoppers(rows):
 
 
 def _with_basis(force, basis):
-    """Safe force, and its basis unless it is sampled patches."""
-    return number(force, ".3g") + (f" ({basis})" if basis in (Basis.FITTED, Basis.EXTRAPOLATED) else "")
+    """Safe force, rounded up, and its basis unless it is sampled patches."""
+    return bounding(force, 3, up=True) + (f" ({basis})" if basis in (Basis.FITTED, Basis.EXTRAPOLATED) else "")
 
 
 def _humidities(humidity, lowest, highest):

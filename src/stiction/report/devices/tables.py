@@ -9,7 +9,15 @@ import xarray as xr
 
 from stiction.devices.risk import Basis
 from stiction.plan.names import by_case
-from stiction.report.format import MISSING, UM, error_alone, fraction_with_band, humidity_text, number
+from stiction.report.format import (
+    MISSING,
+    UM,
+    error_alone,
+    fraction_with_band,
+    humidity_text,
+    lower_to,
+    number,
+)
 from stiction.report.limits import words
 from stiction.report.limits.words import numbered, texts, with_numbers
 from stiction.report.model_error import column
@@ -188,12 +196,12 @@ def _bound(point):
 _HELD = DEVICE | {"held by": (str, "held_by")}
 _LENGTHS = {
     "p": ("g", "share"),
-    "simulated limit [µm]": (".1f", "safe_length_um"),
+    "simulated limit [µm]": (lower_to(1), "safe_length_um"),
     "estimate [µm]": (".1f", "estimate_um"),
     "se, beams": (error_alone, "estimate_se_beams_um"),
     "se, surfaces": (error_alone, "estimate_se_surfaces_um"),
     "basis": (str, "basis"),
-    "bound [µm]": (".1f", "bound_um"),
+    "bound [µm]": (lower_to(1), "bound_um"),
 }
 
 
@@ -232,7 +240,7 @@ def _between(datasets):
     error = max(map(largest_error_between, axes(datasets).values()), key=np.nan_to_num)
     if np.isnan(error):
         return []
-    return [f"Between these humidities, a monotone cubic through the logarithms errs by at most {in_percent(error)}."]
+    return [f"Between these humidities, a monotone cubic through the logarithms errs by ± {in_percent(error)}."]
 
 
 def _beam(point):
@@ -257,9 +265,9 @@ def _beam_as_text(beam, lengths):
         "gap [µm]": f"{beam['gap_um']:g}",
         "held by": beam["held_by"],
         "RH": humidity_text(beam["relative_humidity"]),
-        **{f"p = {share:g} [µm]": number(length, ".1f") for share, length in lengths.items()},
+        **{f"p = {share:g} [µm]": lower_to(1)(length) for share, length in lengths.items()},
         "from": beam["from"] + ("" if np.isnan(error) else f", ± {in_percent(error / 100)}"),
-        "bound [µm]": number(beam["bound_um"], ".1f"),
+        "bound [µm]": lower_to(1)(beam["bound_um"]),
     }
 
 
