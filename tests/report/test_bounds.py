@@ -13,6 +13,7 @@ from stiction.report.format import bounding, fraction_between, lower_to, percent
 
 FRACTIONS = st.floats(1e-4, 0.9999)
 SIZES = st.floats(1e-8, 1e-2)
+UNITS = LENGTH.shown, FORCE.shown
 #: Relative error that a number has if it was computed in other units.
 COMPUTED = 1e-8
 
@@ -60,15 +61,16 @@ def test_rounding_to_the_nearest_would_be_found():
 
 
 @given(st.floats(1e-3, 1e6), st.floats(1, 10))
-def test_bounds_of_a_life_are_rounded_outwards_and_equal_ones_to_the_safe_side(low, factor):
-    least, most = (float(text.replace(" ", "")) for text in life._bounds(low, factor * low, "V"))
-    if not np.isclose(factor, 1, rtol=1e-9):
+def test_bounds_of_a_life_are_rounded_outwards_and_sizes_to_their_safe_side(low, factor):
+    least, most = (float(text.replace(" ", "")) for text in life.bounds_in_words(low, factor * low, "V"))
+    if not np.isclose(factor, 1, rtol=1e-9):  # what is known exactly is rounded to the nearest
         assert least <= low * (1 + COMPUTED)
         assert most >= factor * low * (1 - COMPUTED)
-    (length, same), (force, _) = life._bounds(low, low, "µm"), life._bounds(low, low, "µN")
-    assert length == same
-    assert float(length.replace(" ", "")) <= low * (1 + COMPUTED)
-    assert float(force.replace(" ", "")) >= low * (1 - COMPUTED)
+    for bound, length, force in zip(
+        (low, factor * low), *(life.bounds_in_words(low, factor * low, unit) for unit in UNITS), strict=True
+    ):
+        assert float(length.replace(" ", "")) <= bound * (1 + COMPUTED)
+        assert float(force.replace(" ", "")) >= bound * (1 - COMPUTED)
 
 
 @pytest.mark.parametrize("stated", [250.0, 20.0, 2.6, 0.1, 1500.0])

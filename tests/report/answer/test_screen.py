@@ -62,7 +62,7 @@ def test_without_a_length_the_answer_is_the_length_to_build_in_the_worst_air():
     assert answer.build == pytest.approx(least(lengths[0.67]), rel=5e-3)
     assert (shown.tone, shown.sign) == ("good", "Length to build")
     assert shown.answer == f"No longer than {safe_size(answer.build, LENGTH)}."
-    assert shown.points["What decides"].startswith("RH 0.67, stuck by the tip.")
+    assert shown.points["What decides"].startswith("RH 0.67, the worst of the stated airs, stuck by the tip.")
     assert "at relative humidities of 0.44, 0.67 (95 % confidence, if the model holds)." in shown.basis[0]
     assert "All inputs count as exact." in shown.basis[1]
     assert shown.cells["RH"].tolist() == ["0.44", "0.67"]

@@ -13,17 +13,25 @@ from stiction.plan.names import by_name
 from stiction.report.answer import places, words
 from stiction.report.answer.judged import judged
 from stiction.report.format import MISSING, bounding, number, safe_size
-from stiction.report.table import Table, table_stage
+from stiction.report.table import Table, Term, table_stage
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.end_states import END_STATES
 
-_CAPTION = (
-    "One row for each device. To build: the largest length, or the smallest restoring force, with at most this "
-    "fraction stuck in all stated airs, after all stated touchdowns, at the stated voltage and tilts, with 95 % "
-    "confidence if the model holds; the simulation and all stated or assumed uncertainties are inside. But: stricter "
-    "sizes, between the stated airs, or by simulation alone where nothing that is stated asks for them. P(stuck): "
-    "expected fraction at the stated size, with a band of 95 % that contains the same. Measure: what would "
-    "change the size most, and the size if it were known exactly. No number: what forbids one."
+_SHOWS = (
+    "One row for each device.",
+    Term(
+        "To build",
+        "the largest length, or the smallest restoring force, with at most this fraction stuck in all stated airs, "
+        "after all stated touchdowns, at the stated voltage and tilts, with 95 % confidence if the model holds; the "
+        "simulation and all stated or assumed uncertainties are inside.",
+    ),
+    Term(
+        "But",
+        "stricter sizes, between the stated airs, or by simulation alone where nothing that is stated asks for them.",
+    ),
+    Term("P(stuck)", "expected fraction at the stated size, with a band of 95 % that contains the same."),
+    Term("Measure", "what would change the size most, and the size if it were known exactly."),
+    Term("No number", "what forbids one."),
 )
 
 
@@ -42,19 +50,23 @@ def devices(answers: Mapping[str, Answer]) -> Table:
         "then to build": (_bound, "if_measured", "unit"),
         "no number because of": (str, "forbidden"),
     }
-    rows, caption = [_row(answer) for answer in answers.values()], _CAPTION
+    rows, shows = [_row(answer) for answer in answers.values()], _SHOWS
     if any(answer.pull_offs for answer in answers.values()):
         rows = [row | _of_places(answer) for row, answer in zip(rows, answers.values(), strict=True)]
-        columns, caption = columns | _COLUMNS_OF_PLACES, f"{caption} {_PLACES}"
-    return Table.of([_without_noise(row) for row in rows], caption, columns)
+        columns, shows = columns | _COLUMNS_OF_PLACES, (*shows, *_PLACES)
+    return Table.of([_without_noise(row) for row in rows], shows, columns)
 
 
 #: What columns about probes show.
 _PLACES = (
     "Without a spring, a probe is asked for its pull-off force: what half of the places hold at most, in the air where "
     "they hold most, and the probability that a measurement gives no more than the measured force, or no less, with "
-    "bands of 95 % that contain the errors of simulation and inputs. Two-sided: twice the smaller of both, with a band "
-    "of the simulation alone. Below 5 % with its band, the measured force does not fit."
+    "bands of 95 % that contain the errors of simulation and inputs.",
+    Term(
+        "Two-sided",
+        "twice the smaller of both, with a band of the simulation alone. Below 5 % with its band, the measured force "
+        "does not fit.",
+    ),
 )
 #: Numbers of probes: ends of bands, quantiles of the forces, and ranks of a measured one.
 _ENDS, _QUANTILES, _RANKS = (

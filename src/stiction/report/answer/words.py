@@ -157,8 +157,14 @@ def to_build(answer: Answer) -> str:
 def stricter(answer: Answer) -> list[str]:
     """Stricter sizes of airs between the stated ones, and of what nothing that is stated asks for."""
     at = answer.between
-    sizes = [f"{safe_size(at.size, answer.sought)} between these airs (RH {at.humidity:.2g})"] if at else []
-    return sizes + [f"{safe_size(one.size, answer.sought)} {_unless(one)}" for one in answer.unasked]
+    beside = [(at.size, f"between these airs (RH {at.humidity:.2g})")] if at else []
+    beside += [(one.size, _unless(one)) for one in answer.unasked]
+    return [f"{safe_size(size, answer.sought)} {unless}" for size, unless in beside if _is_stricter(answer, size)]
+
+
+def _is_stricter(answer, size):
+    """Whether a size is stricter than the one to build as both are stated."""
+    return safe_size(size, answer.sought) != safe_size(answer.build, answer.sought)
 
 
 def _unless(one):
@@ -199,7 +205,11 @@ def decides(answer: Answer) -> str:
     last, largest = answer.stated_steps[-1], answer.largest_step
     held = END_STATES[last.shape].by if last.shape in END_STATES else "liquid that dries"
     held = "tip" if answer.is_by_tip else held
-    sentence = f"{_air(answer, last.humidity)}, stuck by {'the ' if held != 'beam or tip' else ''}{held}."
+    stuck = "" if answer.sought is FORCE else f", stuck by {'the ' if held != 'beam or tip' else ''}{held}"
+    worst = ", the worst of the stated airs" * (len(answer.airs) > 1)
+    sentence = f"{_air(answer, last.humidity)}{worst}{stuck}."
+    if answer.between and _is_stricter(answer, answer.between.size):
+        sentence += f" Between them, RH {answer.between.humidity:.2g} is worse."
     change = largest.factor - 1
     if not np.isfinite(change) or abs(change) < _SAME:
         return sentence

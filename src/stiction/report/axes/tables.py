@@ -11,7 +11,7 @@ from stiction.plan.names import by_name
 from stiction.report.axes import process, roughness
 from stiction.report.axes.axis import axes_of
 from stiction.report.format import UM, bounding, with_band, with_error
-from stiction.report.table import DEVICE, Table, table_stage, with_list
+from stiction.report.table import DEVICE, Line, Table, Term, table_stage
 from stiction.stages.axes.law import law_inputs
 from stiction.stages.axes.margins import PARTS
 from stiction.stages.axes.recommended import ALL, variables
@@ -27,12 +27,14 @@ def of_roughness(datasets: Mapping[str, xr.Dataset]) -> Table:
     """
     rows = [row for device, dataset in datasets.items() for row in _rows(device, dataset)]
     said = [f"{device}: {sentence}" for device, dataset in datasets.items() for sentence in roughness.answers(dataset)]
-    caption = (
+    shows = (
         "Simulated limit of a length, or of a restoring force, against the roughness of a surface: with a "
-        "confidence of 95 % (of a stopper: given the drawn surfaces), at most a fraction p sticks. Estimate: a "
-        "fraction p sticks, ± standard error due to the numbers of devices and of drawn surfaces. P(stuck): at the "
-        f"required length or force, with its 95 % band. {roughness.form(*datasets.values())} Devices: number of "
-        "simulated devices at every roughness."
+        "confidence of 95 % (of a stopper: given the drawn surfaces), at most a fraction p sticks.",
+        Term("Estimate", "a fraction p sticks, ± standard error due to the numbers of devices and of drawn surfaces."),
+        Term("P(stuck)", "at the required length or force, with its 95 % band."),
+        roughness.form(*datasets.values()),
+        Term("Devices", "number of simulated devices at every roughness."),
+        *map(Line, said),
     )
     shown = {"and": "other", KURTOSIS: KURTOSIS}
     columns = {
@@ -40,7 +42,7 @@ def of_roughness(datasets: Mapping[str, xr.Dataset]) -> Table:
         for name, column in _OF_ROUGHNESS.items()
         if name not in shown or any(shown[name] in row for row in rows)
     }
-    return Table.of(rows, with_list(caption, said), columns)
+    return Table.of(rows, shows, columns)
 
 
 def of_processes(
@@ -76,7 +78,7 @@ def _of_margins(found, laws, said, made):
     )
     is_map = any("second_value" in row for row in rows)
     columns = {name: column for name, column in _OF_PROCESSES.items() if is_map or name not in _SECOND}
-    return Table.of(rows, with_list(caption, said), columns)
+    return Table.of(rows, [caption, *map(Line, said)], columns)
 
 
 def _rows(device: str, found: xr.Dataset) -> Iterator[dict]:

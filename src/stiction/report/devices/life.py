@@ -28,6 +28,7 @@ from stiction.report.style import (
     styled,
 )
 from stiction.report.table import Table, table_stage
+from stiction.rounding import is_equal
 from stiction.stages.answer.beside import is_short
 from stiction.stages.devices import device_warnings
 from stiction.stages.life.answers import FREE, HOLD, QUESTIONS, STICK, TOUCH, LifeRow, Name, answers_of
@@ -87,8 +88,8 @@ def table(life: Mapping[str, xr.Dataset]) -> Table:
         "device": (str, "device"),
         "question": (str, "question"),
         "what": (str, "what"),
-        "at least": (lambda *ends: _bounds(*ends)[0], "at_least", "at_most", "unit"),
-        "at most": (lambda *ends: _bounds(*ends)[1], "at_least", "at_most", "unit"),
+        "at least": (lambda *ends: bounds_in_words(*ends)[0], "at_least", "at_most", "unit"),
+        "at most": (lambda *ends: bounds_in_words(*ends)[1], "at_least", "at_most", "unit"),
         "±": (lambda error: significant(float(f"{error:.2g}")), "standard_uncertainty"),
         "unit": (str, "unit"),
         "form": (lambda form, needs: f"unknown: state {needs}" if needs else form, "form", "needs"),
@@ -115,11 +116,11 @@ def significant(value: float, up: bool | None = None) -> str:
     return f"{rounded:,.0f}".replace(",", " ") if abs(rounded) >= 100 else f"{rounded:g}"
 
 
-def _bounds(low, high, unit):
-    """Texts of both bounds in a unit for readers, rounded outwards. Equal sizes are rounded to their safe side."""
-    if np.isclose(low, high, rtol=1e-9):
-        return (significant(low, _SAFE_SIDE.get(unit)),) * 2
-    return significant(low, up=False), significant(high, up=True)
+def bounds_in_words(low: float, high: float, unit: str) -> tuple[str, str]:
+    """Texts of both bounds in a unit for readers: of sizes, rounded to their safe side, of others, outwards."""
+    if unit not in _SAFE_SIDE and is_equal(low, high, high):
+        return significant(low), significant(high)
+    return significant(low, _SAFE_SIDE.get(unit, False)), significant(high, _SAFE_SIDE.get(unit, True))
 
 
 # Sentences
@@ -171,10 +172,7 @@ def judged_without(answer: Answer) -> list[str]:
     if not answer.unasked or answer.forbidden:
         return []
     named = "; ".join(f"{_label(one)}, {safe_size(one.size, answer.sought)}" for one in answer.unasked)
-    return [
-        f"The {answer.sought.name} to build does not contain these stricter simulated limits, as nothing that you "
-        f"stated asks for them: {named}."
-    ]
+    return [f"Not inside, as nothing that you stated asks for it: {named}."]
 
 
 def _limit(answers, length):
@@ -345,7 +343,7 @@ def _high(answer: LifeRow) -> str:
 def _ends(answer):
     """Both bounds of an answer in its unit."""
     factor, unit = _UNITS[answer.unit]
-    return _bounds(factor * answer.low, factor * answer.high, unit)
+    return bounds_in_words(factor * answer.low, factor * answer.high, unit)
 
 
 # Figure

@@ -163,12 +163,11 @@ function opened(number) {
   }
   const grouped = number => /^\d{5,}$/.test(number) ? number.replace(/\B(?=(\d{3})+$)/g, " ") : number;
 
-  /** Text of a bound with some digits, never below it if up, else never above, as in report/format.py. */
+  /** Text of a bound with some digits, never below it if up, else never above. Two more digits are those of the page. */
   function bounding(value, digits, up) {
     if (!Number.isFinite(value) || !value) return text(value);
-    const computed = Number(value.toPrecision(9)), step = 10 ** (Math.floor(Math.log10(Math.abs(computed))) + 1 - digits);
-    const steps = Number((computed / step).toPrecision(9));
-    return text((up ? Math.ceil(steps) : Math.floor(steps)) * step, digits);
+    const [mantissa, power] = value.toExponential(digits + 1).split("e"), steps = Number(`${mantissa}e${digits - 1}`);
+    return text(Number(`${up ? Math.ceil(steps) : Math.floor(steps)}e${Number(power) + 1 - digits}`), digits);
   }
   const safeText = size => bounding(size, DIGITS, grid.falls);
   const oneIn = share => `1 in ${grouped(text(1 / share))}`;
@@ -368,7 +367,7 @@ function opened(number) {
       const here = stuckAt(state[size.key], levels).share;
       if (Number.isFinite(here)) make(chart.svg, "circle", {r: 6, class: "here", cx: chart.x(state[size.key]), cy: height(here)});
       const dashed = Number.isFinite(bound) ? ` Dashed: ${data.words.bound} for ${oneIn(state.share)}.` : "";
-      hover(chart, ends, value => `At ${text(value)} ${unit}: ${stuckText(stuckAt(value, levels))}. Line: expected. Band: 95 %, where the simulation resolves it.${dashed}`, () => state[size.key])();
+      hover(chart, ends, value => `At ${text(value, DIGITS)} ${unit}: ${stuckText(stuckAt(value, levels))}. Line: expected. Band: 95 %, where the simulation resolves it.${dashed}`, () => state[size.key])();
     };
   }
 

@@ -12,7 +12,7 @@ from stiction.devices.limits.limit import Limit, Side
 from stiction.plan.names import by_name
 from stiction.report.format import TO_UM, airs, number, safe_size, with_error
 from stiction.report.limits import words
-from stiction.report.table import DEVICE, Table, table_stage, with_list
+from stiction.report.table import DEVICE, Line, Table, table_stage
 from stiction.rounding import in_percent
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.opening import ARC, MIDDLE, S_SHAPE, SOUGHT_BY
@@ -204,7 +204,7 @@ def test_beams(datasets: Mapping[str, xr.Dataset]) -> Table:
     )
     missing = {"measured"} - {name for row in rows for name in row}
     columns = {name: column for name, column in _COLUMNS.items() if name not in missing}
-    return Table.of(rows, with_list(caption, sentences), columns)
+    return Table.of(rows, [caption, *map(Line, sentences)], columns)
 
 
 def _data(device, update):
