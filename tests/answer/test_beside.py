@@ -11,6 +11,7 @@ from numpy.testing import assert_equal
 from stiction.answer.data import Answer, Between, Stay, Unasked, Verdict
 from stiction.report.answer import screen, tables, words
 from stiction.report.devices import explorer
+from stiction.report.format import safe_size
 from stiction.stages.answer import beside
 from stiction.stages.answer.answer import answer_of, layout
 from stiction.stages.life.answers import LifeRow, Name
@@ -42,8 +43,10 @@ def test_the_headline_of_a_stopper_names_a_larger_force_between_its_airs_as_its_
     forces, airs = grid.safe[:, grid.share.values.index(answer.share)], np.array(grid.axes[0].values)
     inside = (airs > 0.44) & (airs < 0.67)
     assert 1e6 * answer.between.size == pytest.approx(forces[inside].max())
-    beside_it = f"about {answer.in_words(answer.between.size)} between these airs (interpolated: state RH 0.55)"
-    assert screen.headline(answer).startswith(f"At least {answer.in_words(answer.build)}, but {beside_it}; with your ")
+    beside_it = f"{safe_size(answer.between.size, answer.sought)} between these airs (interpolated: state RH 0.55)"
+    assert screen.headline(answer).startswith(
+        f"At least {safe_size(answer.build, answer.sought)}, but {beside_it}; with your "
+    )
     row = tables.devices({"S1": answer}).frame.iloc[0]
     assert row["stricter"] == beside_it
     assert row["between"] == pytest.approx(1e6 * answer.between.size)
@@ -91,7 +94,7 @@ def test_the_headline_of_a_beam_names_a_shorter_length_of_its_chart_between_its_
 
 def test_a_headline_names_what_nothing_stated_asks_for_if_it_is_stricter():
     answer = replace(beam_answer(CANTILEVER, LENGTHS), unasked=())
-    build = answer.in_words(answer.build)
+    build = safe_size(answer.build, answer.sought)
     assert screen.headline(answer) == f"No longer than {build}."
     limits = [(Name.FAST, "", 1e-4), (f"{Name.COLLAPSE}_water", "", 1.2e-4), ("other", "held length: more", 1.3e-4)]
     stricter = replace(answer, unasked=tuple(Unasked(*limit) for limit in limits))

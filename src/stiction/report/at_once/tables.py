@@ -11,7 +11,7 @@ from stiction.config.units import from_si
 from stiction.devices.risk import one_in
 from stiction.report.format import MISSING, airs, with_error
 from stiction.report.page import Page, Section
-from stiction.report.table import DEVICE, HUMIDITY, Columns, Table, table_stage, with_list
+from stiction.report.table import DEVICE, HUMIDITY, Columns, Line, Table, table_stage
 from stiction.stages.at_once.beside import CONFIDENCE, FORCES, LENGTHS, estimated, file_of
 
 
@@ -104,8 +104,8 @@ def table(estimates: Mapping[str, xr.Dataset], sizes: Sizes = SIZES["length"]) -
     """Sizes of runs beside estimates, with all inputs of the estimate, by device."""
     rows = [row for name, dataset in estimates.items() for row in _rows(name, dataset)]
     refused = [f"{name}: {sentence}" for name, dataset in estimates.items() for sentence in refusals(dataset)]
-    caption = with_list(" ".join([sizes.caption, counted(list(estimates.values()), sizes)]), refused)
-    return Table.of(rows, caption, DEVICE | sizes.columns)
+    shows = sizes.caption, counted(list(estimates.values()), sizes), *map(Line, refused)
+    return Table.of(rows, shows, DEVICE | sizes.columns)
 
 
 def _rows(device, dataset) -> Iterator[dict[str, Any]]:

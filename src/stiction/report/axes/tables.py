@@ -6,11 +6,12 @@ from itertools import product
 import numpy as np
 import xarray as xr
 
+from stiction.answer.sought import LENGTH
 from stiction.plan.names import by_name
 from stiction.report.axes import process, roughness
 from stiction.report.axes.axis import axes_of
-from stiction.report.format import UM, with_band, with_error
-from stiction.report.table import DEVICE, Table, table_stage, with_list
+from stiction.report.format import UM, bounding, with_band, with_error
+from stiction.report.table import DEVICE, Line, Table, Term, table_stage
 from stiction.stages.axes.law import law_inputs
 from stiction.stages.axes.margins import PARTS
 from stiction.stages.axes.recommended import ALL, variables
@@ -28,12 +29,14 @@ def of_roughness(datasets: Mapping[str, xr.Dataset]) -> Table:
     sentences = [
         f"{device}: {sentence}" for device, dataset in datasets.items() for sentence in roughness.answers(dataset)
     ]
-    caption = (
+    shows = (
         "Simulated limit of a length, or of a restoring force, against the roughness of a surface: with a "
-        "confidence of 95 % (of a stopper: given the drawn surfaces), at most a fraction p sticks. Estimate: a "
-        "fraction p sticks, ± standard error due to the numbers of devices and of drawn surfaces. P(stuck): at the "
-        f"required length or force, with its 95 % band. {roughness.form(*datasets.values())} Devices: number of "
-        "simulated devices at every roughness."
+        "confidence of 95 % (of a stopper: given the drawn surfaces), at most a fraction p sticks.",
+        Term("Estimate", "a fraction p sticks, ± standard error due to the numbers of devices and of drawn surfaces."),
+        Term("P(stuck)", "at the required length or force, with its 95 % band."),
+        roughness.form(*datasets.values()),
+        Term("Devices", "number of simulated devices at every roughness."),
+        *map(Line, sentences),
     )
     shown = {"and": "other", KURTOSIS: KURTOSIS}
     columns = {
@@ -41,7 +44,7 @@ def of_roughness(datasets: Mapping[str, xr.Dataset]) -> Table:
         for name, column in _OF_ROUGHNESS.items()
         if name not in shown or any(shown[name] in row for row in rows)
     }
-    return Table.of(rows, with_list(caption, sentences), columns)
+    return Table.of(rows, shows, columns)
 
 
 def of_processes(
@@ -83,7 +86,7 @@ def _of_margins(curves, laws, sentences, makes):
     )
     is_map = any("second_value" in row for row in rows)
     columns = {name: column for name, column in _OF_PROCESSES.items() if is_map or name not in _SECOND}
-    return Table.of(rows, with_list(caption, sentences), columns)
+    return Table.of(rows, [caption, *map(Line, sentences)], columns)
 
 
 def _rows(device: str, curves: xr.Dataset) -> Iterator[dict]:
@@ -159,7 +162,7 @@ _OF_ROUGHNESS = DEVICE | {
     KURTOSIS: (_kurtosis, KURTOSIS),
     "p": ("g", "share"),
     "unit": (str, "unit"),
-    "simulated limit": (".4g", "safe"),
+    "simulated limit": (lambda safe, unit: bounding(safe, 4, unit != LENGTH.shown), "safe", "unit"),
     "estimate": (with_error, "estimate", "estimate_se"),
     "required": ("g", "required"),
     **_STUCK,

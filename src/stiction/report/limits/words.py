@@ -14,7 +14,7 @@ from stiction.contact.materials import COATING_ATTRACTION
 from stiction.contact.meniscus import MOLECULES as LIQUID
 from stiction.devices.limits.limit import Limit
 from stiction.devices.limits.rules import FILMS, MOLECULES, OF_SLOPE, PLASTIC, PLATE, RIM, ROTATION, SLENDER, STEEPEST
-from stiction.report.format import TO_MPA, TO_NM, TO_UM, airs, with_error
+from stiction.report.format import TO_MPA, TO_NM, TO_UM, airs, bounding, listed, with_error
 from stiction.rounding import in_percent
 from stiction.stages.surfaces.surface_flags import SIDES
 
@@ -141,7 +141,8 @@ def _filled_gap(gap, film, rms):
 
 
 def _large_rotation(crack_length, slope):
-    steep = f"At a length of {TO_UM * crack_length:.0f} µm the beam reaches a slope of {slope:.3g}, above {ROTATION}: "
+    length = bounding(TO_UM * crack_length, 3, up=False)
+    steep = f"At a length of {length} µm the beam reaches a slope of {slope:.3g}, above {ROTATION}: "
     by = f"about {in_percent(OF_SLOPE * slope**2)}" if slope <= STEEPEST else "more"
     return (
         f"{steep}the linear theory of beams does not hold. Longer beams would release, too, by {by}: the length is on "
@@ -432,6 +433,19 @@ def not_modelled(
 
 # Lists
 
+#: Kinds of limits that share a line of a list, by the number that is worst.
+_WORST = {"large_rotation": "slope"}
+
+
+def line_of(limit: Limit) -> Any:
+    """Key that limits of one line of a list share: many steep lengths have one line, on the steepest."""
+    return limit.kind if limit.kind in _WORST else limit
+
+
+def worst(limits: Sequence[Limit]) -> Limit:
+    """Worst of the limits of one line."""
+    return max(limits, key=lambda limit: limit.numbers[_WORST[limit.kind]]) if len(limits) > 1 else limits[0]
+
 
 def distinct(limits: Mapping[Any, Iterable[Limit]]) -> list[Limit]:
     """Different limits of all subjects in their order."""
@@ -447,3 +461,15 @@ def numbered(limits: Mapping[Any, Iterable[Limit]]) -> dict[Any, list[int]]:
 def with_numbers(limits: Mapping[Any, Iterable[Limit]]) -> list[str]:
     """Sentences on the different limits, each after its number."""
     return [f"({k}) {sentence}" for k, sentence in enumerate(texts(distinct(limits)), 1)]
+
+
+def lines_with_numbers(limits: Mapping[Any, Iterable[Limit]]) -> list[str]:
+    """Sentences on the worst limit of each line, after the numbers of all of its limits."""
+    numbers, lines = {limit: f"({k})" for k, limit in enumerate(distinct(limits), 1)}, {}
+    for limit in numbers:
+        lines.setdefault(line_of(limit), []).append(limit)
+    return [
+        f"{listed([numbers[limit] for limit in line])} {text(worst(line))}"
+        + f" This is the worst of {len(line)}." * (len(line) > 1)
+        for line in lines.values()
+    ]
