@@ -19,7 +19,7 @@ from stiction.devices.limits.rules import FILMS
 from stiction.plan.plan import Plan
 from stiction.report.beams import prediction
 from stiction.report.checks import COARSER_ACCURACY, RESOLVED
-from stiction.report.devices.life import bounds_in_words, significant
+from stiction.report.devices.life import bounds_in_words
 from stiction.report.format import MISSING, TO_MJ, TO_UM, bounding, number, with_error
 from stiction.stages.beams.cantilevers import Cantilevers, cantilever, sections
 from stiction.surface import feasible
@@ -109,7 +109,7 @@ def life(frame):
     for row in frame.itertuples(index=False):
         bounds = dict.fromkeys(bounds_in_words(row.at_least, row.at_most, row.unit))
         texts[f"life_{row.device}_{row.answer}"] = " to ".join(bounds)
-        texts[f"life_{row.device}_length"] = significant(row.length_um)
+        texts[f"life_{row.device}_length"] = bounding(row.length_um, 3, up=False)
     return texts
 
 

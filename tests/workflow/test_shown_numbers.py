@@ -8,7 +8,7 @@ PAIR = re.compile(r"([+-]?[\d.]+) ± ([\d.]+)")
 
 def faults(text):
     """Numbers of a text with other decimals than their errors, with too few digits of the error, or a negative zero."""
-    found = re.findall(r"(?<![\w.,^{-])-0(?:\.0*)?(?![\d.])", text)
+    found = re.findall(r"(?<![\w.,^{−-])[−-]0(?:\.0*)?(?![\d.])", text)
     for value, error in PAIR.findall(text):
         decimals = [len(number.rstrip(".").partition(".")[2]) for number in (value, error)]
         digits = error.replace(".", "").lstrip("0")
@@ -28,7 +28,7 @@ def test_all_numbers_of_a_run_have_the_digits_of_their_errors(smoke):
 
 
 def test_numbers_with_wrong_digits_are_noticed():
-    wrong = ["0.0012 ± 0.001", "57.8 ± 0.20", "5 ± 0.0", "| -0 |", "| -0.00 |"]
+    wrong = ["0.0012 ± 0.001", "57.8 ± 0.20", "5 ± 0.0", "| -0 |", "| -0.00 |", "<td>−0.0<"]
     assert [bool(faults(text)) for text in wrong] == [True] * len(wrong)
     right = ["0.0012 ± 0.0010", "57.8 ± 0.4", "0.5 ± 0", "-0.04", "+0.0 ± 0.3", "1234 ± 30"]
     assert [faults(text) for text in right] == [[]] * len(right)

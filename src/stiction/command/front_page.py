@@ -5,8 +5,7 @@ page only as characters: HTML shows it as it is, and Jinja finds no brace in it.
 """
 
 import csv
-from collections.abc import Iterator, Mapping, Sequence
-from itertools import groupby
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,10 +14,8 @@ import yaml
 from stiction.command.present import Present
 from stiction.config.merging import differing
 from stiction.config.reading import paper
-from stiction.contact.air import Air
-from stiction.report.format import with_error
+from stiction.report.format import humidity_text, with_error
 from stiction.report.html import rendered
-from stiction.rounding import in_percent
 from stiction.run.markdown import plain
 from stiction.run.provenance import code_of, recorded_runs, start_of
 
@@ -43,7 +40,9 @@ def front_page(folder: Path) -> str:
     page = rendered(
         "front.html",
         subjects=subjects(config),
-        answers=answers(results, config),
+        answers=list(answers(results, config)),
+        pairs=pairs(results) if config["run"]["pairs"] else [],
+        length=config["beam"]["length_um"],
         opened=_first_results(results, config),
         checks=results.text("verdict.txt").strip() if config["run"]["pairs"] else None,
         warnings=list(warnings(results, config)),
@@ -72,41 +71,36 @@ def subjects(config: Mapping[str, Any]) -> str:
 
 
 def answers(results: Present, config: Mapping[str, Any]) -> Iterator[str]:
-    """Yield the results about every device and every pair, a sentence each."""
+    """Yield the results about every device, a sentence each."""
     for name in config.get("devices", {}):
         yield f"Device {name}: {next(iter(results.text(f'devices/{name}.txt').splitlines()), 'not computed')}"
-    if config["run"]["pairs"]:
-        yield from pair_answers(results, config)
 
 
-def pair_answers(results: Present, config: Mapping[str, Any]) -> Iterator[str]:
-    """Yield the ends of the beams of every pair, a sentence each, or nothing before Table III is computed."""
+def pairs(results: Present) -> list[dict[str, str]]:
+    """Ends of the beams of every pair in each air: a row of a table each, or nothing before Table III is computed."""
     rows = csv.DictReader(results.text("tables/table_3.csv").splitlines())
-    for pair, of_pair in groupby((row for row in rows if row["model"] == "NG"), lambda row: row["pair"]):
-        yield cracks(pair, list(of_pair), config["beam"]["length_um"])
+    return [ends(row) for row in rows if row["model"] == "NG"]
 
 
-def cracks(pair: str, rows: Sequence[Mapping[str, str]], length: float) -> str:
-    """Ends of the beams of a pair at each humidity, from their rows of Table III, with the beams' length [µm].
+def ends(row: Mapping[str, str]) -> dict[str, str]:
+    """Ends of the beams of a pair in one air, from their row of Table III.
 
     Examples
     --------
     >>> shares = {"share_s_shape": "0.98", "share_arc": "0.02", "share_free": "0"}
-    >>> row = {"relative_humidity": "0.67", "crack_length_um": "685.7", "crack_length_std_um": "16.28"}
-    >>> cracks("b", [row | shares], 1500)
-    'Pair b, beams of 1500 µm: RH 0.67: 98 % stick behind a crack of 686 ± 16 µm (mean ± standard deviation).'
+    >>> row = {"pair": "b", "relative_humidity": "0.67", "crack_length_um": "685.7", "crack_length_std_um": "16.28"}
+    >>> list(ends(row | shares).values())
+    ['b', '0.67', '98', '686 ± 16', '2']
     """
-    return f"Pair {pair}, beams of {length:g} µm: {'; '.join(map(_ends, rows))} (mean ± standard deviation)."
-
-
-def _ends(row):
-    """End states of the beams at one humidity."""
-    where = Air(float(row["relative_humidity"])).words
-    stuck, arcs = (float(row[f"share_{state}"]) for state in ("s_shape", "arc"))
-    if not row["crack_length_um"]:
-        return f"{where}: {in_percent(arcs)} are held by their tip alone, the others come free"
-    crack = with_error(float(row["crack_length_um"]), float(row["crack_length_std_um"]))
-    return f"{where}: {100 * stuck:.3g} % stick behind a crack of {crack} µm"
+    stuck, arcs = (f"{100 * float(row[f'share_{state}']):.3g}" for state in ("s_shape", "arc"))
+    crack = (float(row[name] or "nan") for name in ("crack_length_um", "crack_length_std_um"))
+    return {
+        "pair": row["pair"],
+        "RH": humidity_text(float(row["relative_humidity"])),
+        "stuck behind a crack [%]": stuck,
+        "crack [µm]": with_error(*crack),
+        "stuck at the tip alone [%]": arcs,
+    }
 
 
 def _first_results(results, config):

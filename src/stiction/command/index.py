@@ -26,7 +26,6 @@ from stiction.plan.planner import Planner, hashes
 from stiction.plan.stage import WILDCARDS, expression
 from stiction.report.drawings import device_drawing
 from stiction.report.html import rendered
-from stiction.report.limits.words import line_of
 from stiction.report.surfaces.words import surface_in_words
 from stiction.run import stale_results
 from stiction.run.atomic import save_text
@@ -35,6 +34,8 @@ from stiction.run.provenance import code_of, recorded_runs, start_of
 
 #: Name of the page.
 INDEX = "index.html"
+#: Tables of the paper, by the pages that lists show.
+_FIRST = tuple(f"tables/table_{number}.html" for number in (1, 2, 3))
 #: Most devices that are cards with drawings. More are rows of a table.
 _CARDS = 20
 #: Complete configuration of the last run, among the files of Snakemake.
@@ -132,10 +133,11 @@ def index(folder: Path, rules: Iterable[Mapping[str, Any]], unlike: Collection[s
         title=front_page.subjects(shown) or f"surfaces {', '.join(_surfaces_of_run(shown))}",
         made=f"Last run: {start_of(last)}, {next(code_of(last))}.",
         devices=list(_devices(results, config, all_items)),
-        pairs=list(front_page.pair_answers(results, config)),
+        pairs=front_page.pairs(results),
+        length=config["beam"]["length_um"],
         surfaces=list(_surfaces(results, shown)),
         figures=_by_category(item for item in all_items if item.shown.endswith(".png")),
-        tables=[item for item in all_items if item.category == "Tables"],
+        tables=sorted((item for item in all_items if item.category == "Tables"), key=_order),
         verdict=results.text("verdict.txt").strip() or _failed(checks),
         checks=checks,
         judged=bool(front_page.warning_pages(results, config)),
@@ -174,6 +176,11 @@ def items(results: Present, rules: Iterable[Mapping[str, Any]]) -> Iterator[Item
                 yield Item(rule["shown"]["category"], rule["shown"]["title"].format(**at), files[key], ends)
 
 
+def _order(table):
+    """Key that puts tables of the paper first and keeps the order of all others."""
+    return _FIRST.index(table.shown) if table.shown in _FIRST else len(_FIRST)
+
+
 def _by_category(figures: Iterable[Item]) -> dict[str, list[Item]]:
     """Figures by their category, in the order of the rules."""
     ordered: dict[str, list[Item]] = {}
@@ -185,6 +192,8 @@ def _by_category(figures: Iterable[Item]) -> dict[str, list[Item]]:
 def _devices(results: Present, config: Mapping, all_items: Sequence[Item]) -> Iterator[dict[str, Any]]:
     """Devices with their first answer, their page and the number of warnings, and a few with drawings."""
     pages, sections = {item.shown for item in all_items}, config.get("devices", {})
+    from stiction.report.limits.words import line_of  # imports the physics
+
     limits = front_page.limits(results, config)
     lines = {(device.name, line_of(limit)) for limit, subjects in limits for device in subjects}
     warned = Counter(name for name, _ in lines)

@@ -13,8 +13,9 @@ from stiction.report.style import OUTLINED, PUBLISHED
 ROW, LINE, AROUND = 0.24, 0.13, 0.75
 #: Widths of the bar of a mark and of its ends [points].
 _THICK, _END = 3.5, 7
-#: Width of a character of a number [in], part of a figure that its panels fill, and free part of an axis on its left.
-_CHARACTER, _FILLED, _LEFT = 0.06, 0.55, 0.06
+#: Distance of a number from its mark, and width of one of its characters [in]. Part of a figure that its panels fill,
+#: and free part of an axis on its left.
+_AWAY, _CHARACTER, _FILLED, _LEFT = 0.08, 0.06, 0.55, 0.06
 _NUMBER = {"textcoords": "offset points", "va": "center", "fontsize": 7, "path_effects": OUTLINED}
 
 
@@ -60,7 +61,7 @@ def _set_ends(panel, longest):
     low, high = panel.dataLim.intervalx
     span = (high - low) or abs(high) or 1.0
     width = _FILLED * panel.figure.get_figwidth() / panel.get_gridspec().ncols
-    right = min(0.5, _CHARACTER * longest / width) or _LEFT
+    right = min(0.5, (_AWAY + _CHARACTER * longest) / width) if longest else _LEFT
     panel.set_xlim(low - _LEFT * span, high + span * right / (1 - right))
 
 

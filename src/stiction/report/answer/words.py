@@ -69,6 +69,8 @@ _REASONS = {
 LEAST = 1e-5
 #: Fraction that is too near to all for a number.
 MOST = 0.999
+#: Part of a power of ten from which on an upper end of a band is this power.
+_NEAR = 0.95
 #: Fraction beyond which two digits would round to all.
 _NEARLY_ALL = 0.99
 
@@ -76,13 +78,13 @@ _NEARLY_ALL = 0.99
 def percent(fraction: float, end: str = "") -> str:
     """Fraction in percent with two digits, near all of them of the rest.
 
-    An ``end`` of a band, ``low`` or ``high``, is rounded outwards.
+    An ``end`` of a band, ``low`` or ``high``, is rounded outwards, an upper one just below 0.1 %, 1 % or 10 % to these.
 
     Examples
     --------
     >>> percent(0.1812), percent(0.000242), percent(3e-9), percent(0.99992), percent(0.9962)
     ('18 %', '0.024 %', 'less than 0.001 %', 'more than 99.9 %', '99.62 %')
-    >>> percent(0.000991, "high"), percent(0.0019, "low"), percent(3e-9, "low"), percent(3e-9, "high")
+    >>> percent(0.000961, "high"), percent(0.0019, "low"), percent(3e-9, "low"), percent(3e-9, "high")
     ('0.1 %', '0.19 %', '0 %', '0.001 %')
     """
     if fraction < LEAST:
@@ -90,10 +92,16 @@ def percent(fraction: float, end: str = "") -> str:
     if fraction > MOST:
         return {"low": "99.9 %", "high": "100 %"}.get(end, "more than 99.9 %")
     if end:
-        return f"{percent_bound(fraction, 2, end == 'high')} %"
+        return f"{percent_bound(fraction, _digits(fraction, end), end == 'high')} %"
     if fraction > _NEARLY_ALL:
         return f"{100 - float(f'{100 * (1 - fraction):.2g}'):.4g} %"
     return f"{float(f'{100 * fraction:.2g}'):g} %"
+
+
+def _digits(fraction, end):
+    """Digits of an end of a band: one for an upper end that they raise to a power of ten below 100 %."""
+    power = 10 ** np.ceil(np.log10(fraction))
+    return 1 if end == "high" and _NEAR * power < fraction < power < 1 else 2
 
 
 def stuck_in_words(stuck: Probability) -> str:

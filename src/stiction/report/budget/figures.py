@@ -18,7 +18,7 @@ from stiction.plan.names import by_name
 from stiction.report.answer.tables import of_datasets
 from stiction.report.answer.words import is_forbidden
 from stiction.report.budget.tables import choice_label, response_text
-from stiction.report.format import TO_UN, number
+from stiction.report.format import TO_UN, bounding, number
 from stiction.report.limits import words
 from stiction.report.style import (
     BUILD,
@@ -113,7 +113,7 @@ def _stuck_over_force(panel, dataset, build):
     if limits.notnull().any():
         panel.plot([], [], "|", color="0.3", markersize=9, markeredgewidth=1.5, label="simulated limit, 95 %")
     if np.isfinite(build):
-        panel.axvline(build, color=BUILD, linewidth=1.2, label=f"to build, {build:.3g} µN")
+        panel.axvline(build, color=BUILD, linewidth=1.2, label=f"to build, {bounding(build, 3, up=True)} µN")
     panel.axvline(restoring, color="0.4", linestyle=":", linewidth=0.8)
     panel.set(yscale="log", xlim=(0, None), ylim=(lowest, 1.3))
     if np.isfinite(restoring):
@@ -168,7 +168,8 @@ def _force_over_humidity(panel, dataset, build, between):
     if np.isfinite(restoring := TO_UN * float(dataset.restoring_force)):
         entries.append(panel.axhline(restoring, color="0.4", linestyle=":", linewidth=0.8, label="restoring force"))
     if np.isfinite(build):
-        label, at = f"to build in the stated airs, {build:.3g} µN", [placed.get(h, h) for h in dataset.humidity.values]
+        label = f"to build in the stated airs, {bounding(build, 3, up=True)} µN"
+        at = [placed.get(humidity, humidity) for humidity in dataset.humidity.values]
         entries += panel.plot(at, np.full(len(at), build), "D", color=BUILD, markersize=4, label=label)
     if between:
         label = f"between them, RH {between.humidity:.2g}: {TO_UN * between.size:.3g} µN"

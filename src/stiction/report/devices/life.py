@@ -144,7 +144,7 @@ def sentences(dataset: xr.Dataset, build: float = np.nan, has_shares: bool = Fal
     answers = {answer.name: answer for answer in answers_of(dataset) if not answer.needs}
     unknown = [answer for answer in answers_of(dataset) if answer.needs]
     length = float(dataset.length)
-    at = f"At {TO_UM * length:.0f} µm{_limit(answers, length)} it" if np.isfinite(length) else "It"
+    at = f"At {bounding(TO_UM * length, 3, up=False)} µm{_limit(answers, length)} it" if np.isfinite(length) else "It"
     potential = float(dataset.potential)
     texts = [*_beside(build, _sought(dataset)), *_touching(answers, at)]
     texts += _asking(answer for answer in unknown if answer.question == TOUCH)

@@ -47,7 +47,7 @@ def sentences(device: str, errors: Mapping[str, xr.Dataset] | None) -> list[str]
         texts += _of_tips(error)
     texts += [_safe_side(uncorrected, sought)] if uncorrected else []
     if error.across_gaps:
-        return [*texts, "Both models of contact, by summits and full, have the attraction across gaps."]
+        return texts
     gaps = "the other way in drier air: build no longer and rely on no smaller force because of it."
     return [*texts, f"Attraction across gaps is in neither model. It acts {gaps}"]
 

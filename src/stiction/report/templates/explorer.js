@@ -176,7 +176,8 @@ function opened(number) {
   function percent(share, end) {
     if (share < 1e-5) return {low: "0 %", high: "0.001 %"}[end] ?? "less than 0.001 %";
     if (share > 0.999) return {low: "99.9 %", high: "100 %"}[end] ?? "more than 99.9 %";
-    if (end) return `${share > 0.99 ? Number((100 - bounding(100 * (1 - share), 2, end === "low")).toPrecision(4)) : bounding(100 * share, 2, end === "high")} %`;
+    const power = 10 ** Math.ceil(Math.log10(share)), digits = end === "high" && 0.95 * power < share && power < 1 ? 1 : 2;
+    if (end) return `${share > 0.99 ? Number((100 - bounding(100 * (1 - share), 2, end === "low")).toPrecision(4)) : bounding(100 * share, digits, end === "high")} %`;
     if (share > 0.99) return `${Number((100 - Number((100 * (1 - share)).toPrecision(2))).toPrecision(4))} %`;
     return `${Number((100 * share).toPrecision(2))} %`;
   }
