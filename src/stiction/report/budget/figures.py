@@ -109,7 +109,6 @@ def _stuck_over_force(panel, dataset, build):
         _, *band = stuck_over(dataset, humidity, at)
         panel.fill_between(TO_UN * at, *band, color=colour, alpha=0.2, linewidth=0)
         panel.plot(TO_UN * of_air, of_air.share, "|", color=colour, markersize=9, markeredgewidth=1.5)
-    panel.fill_between([], [], [], color="0.3", alpha=0.2, linewidth=0, label="95 % band")
     if limits.notnull().any():
         panel.plot([], [], "|", color="0.3", markersize=9, markeredgewidth=1.5, label="simulated limit, 95 %")
     if np.isfinite(build):
@@ -118,7 +117,7 @@ def _stuck_over_force(panel, dataset, build):
     panel.set(yscale="log", xlim=(0, None), ylim=(lowest, 1.3))
     if np.isfinite(restoring):
         _name_restoring_force(panel, restoring)
-    legend_below(panel, handles(panel)[0])
+    legend_below(panel, [*handles(panel)[0], Patch(color="0.3", alpha=0.2, linewidth=0, label="95 % band")])
 
 
 def _forces_of_band(dataset, forces, limits):
