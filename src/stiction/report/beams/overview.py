@@ -66,7 +66,7 @@ def overview(
     _forces(curves, forces)
     _shapes(shapes, beams)
     _lengths(lengths, released, rows(published, pair=pair))
-    letter(axes, ["rough surface", "adhesive force", "released beams", "crack length, mean ± std"])
+    letter(axes, ["rough surface", "adhesive force", "released beams", "crack length"])
     return figure
 
 
@@ -145,7 +145,7 @@ def _lengths(panel, released, published):
     style |= {"fmt": "o-", "label": "computed here"}
     aside = _APART if len(published) else 0.0
     panel.errorbar(humidity[~dry] - aside, mean[~dry], deviation[~dry], **style)
-    panel.set(xlabel="relative humidity [–]", ylabel="crack length $l_s$ [µm]")
+    panel.set(xlabel="relative humidity [–]", ylabel="crack length $l_s$, mean ± std [µm]")
     panel.margins(y=0.12)
     if len(humidity) > _FEW:
         low, high = panel.get_ylim()

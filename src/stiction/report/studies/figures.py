@@ -181,12 +181,12 @@ def sample_convergence(
     figure, (axes,) = panels(1, 3, (DOUBLE, 2.4), width_ratios=(1.3, 1, 1))
     _densities(axes[0], sizes)
     most = _dimension_errors(axes[1], dimension_errors)
-    axes[1].axhline(tolerance, **_BOUND, label=f"tolerance: {most + 1} are kept")
+    axes[1].axhline(tolerance, **_BOUND, label=f"tolerance,\nabove: {most + 1} kept")
     low, high = axes[1].get_ylim()
     axes[1].set_ylim(min(low, tolerance / 2), 10 * max(high, tolerance))  # room for the legend
     _distances(axes[2], sizes)
     legends(figure, {axes[0]: {}, axes[1]: {"loc": "upper right", "ncols": 2}})
-    letter(axes, [r"density of $\bar e$", f"variance lost with {most} coordinates", "distance from all samples"])
+    letter(axes, [r"density of $\bar e$", f"variance lost, $N_g$ = {most}", "distance from all samples"])
     return figure
 
 
