@@ -98,7 +98,8 @@ def test_stricter_sizes_are_marked_at_the_allowed_fraction_and_stated_in_the_tit
     assert panel.get_xlim()[0] < 90 < 1e6 * SIZES[0], "the axis reaches them"
     assert panel.get_title(loc="left").splitlines() == [
         "C1, cantilever",
-        "stricter: 138 µm between these airs (RH 0.8)",
+        "stricter: 138 µm between these airs",
+        "(RH\N{NO-BREAK SPACE}0.8)",
         "stricter: 90 µm if water dries on it",
     ]
     (without,) = risk({"C1": answered()}).axes

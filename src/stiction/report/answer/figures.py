@@ -2,6 +2,7 @@
 
 import textwrap
 from collections.abc import Mapping
+from itertools import chain
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -22,6 +23,7 @@ from stiction.report.style import (
     figure_stage,
     handles,
     humidity_colour,
+    is_page,
     legend_below,
     legend_outside,
     letter_lines,
@@ -40,6 +42,8 @@ _STUCK, _LOWEST = "P(stuck) [–]", 1 / 30
 _WIDE = 26
 #: Colour and marker of sizes that are stricter than the size to build.
 _STRICTER = {"color": "black", "marker": "v", "linestyle": "", "markersize": 6}
+#: Most characters of a line above one of three panels.
+_LINE = 38
 #: Place of the label of a fraction.
 _LABEL = {"xycoords": ("axes fraction", "data"), "va": "bottom", "fontsize": 7, "path_effects": OUTLINED}
 
@@ -116,7 +120,14 @@ def risk(answers: Mapping[str, Answer]) -> Figure:
 def _title(name, answer):
     """Name and kind of a device, and below it the sizes that are stricter than the size to build."""
     stricter = [] if words.is_forbidden(answer) else words.stricter(answer)
-    return "\n".join([f"{name}, {answer.kind}", *(f"stricter: {size}" for size in stricter)])
+    lines = [_wrapped(f"stricter: {size}") for size in stricter]
+    return "\n".join([f"{name}, {answer.kind}", *chain.from_iterable(lines)])
+
+
+def _wrapped(line):
+    """Line above one of three panels as lines that fit there, with a humidity whole. A page has room."""
+    whole = line.replace("RH ", "RH\N{NO-BREAK SPACE}")
+    return [whole] if is_page() else textwrap.wrap(whole, _LINE)
 
 
 def _stuck(panel: Axes, answer):
