@@ -109,43 +109,41 @@ def drawn(_folder, into, names, *configs):
         Image.new("RGB", (20, 10)).save(into / f"{name}.png")
 
 
-def test_tables_and_pictures_of_the_example_are_copied(tmp_path, monkeypatch):
+@pytest.fixture
+def made(tmp_path, monkeypatch):
+    """Names of the files that are copied into folders of tables and pictures, empty at first."""
     monkeypatch.setattr(update, "DOCS", tmp_path / "docs")
     monkeypatch.setattr(update.narrow, "draw", drawn)
     (tmp_path / "mine.yaml").touch()
     for part in ("tables", "pictures"):
         (tmp_path / "docs" / part).mkdir(parents=True)
+    return lambda: {path.name for path in (tmp_path / "docs").rglob("*.*")}
+
+
+def test_tables_and_pictures_of_the_example_are_copied(tmp_path, made):
     for place in (*update.EXAMPLE_TABLES.values(), update.EXAMPLE_DRAWN):
         (tmp_path / place).parent.mkdir(parents=True, exist_ok=True)
         for kind in ("csv", "md"):
             (tmp_path / f"{place}.{kind}").write_text(f"{place} {kind}")
     Image.new("RGB", (20, 10)).save(tmp_path / f"{update.EXAMPLE_DRAWN}.png")
     update.collect_example(tmp_path)
-    made = {path.name for path in (tmp_path / "docs").rglob("*.*")}
     pictures = {"surface_sheet_Etched.png", "prediction.png"}
-    assert made == {path.name for path in (DOCS / "tables").glob("example_*")} | pictures
+    assert made() == {path.name for path in (DOCS / "tables").glob("example_*")} | pictures
     assert (tmp_path / "docs" / "tables" / "example_scans.md").read_text() == "results/tables/scans md"
 
 
-def test_table_and_picture_of_the_drawn_test_beams_are_copied(tmp_path, monkeypatch):
+def test_table_and_picture_of_the_drawn_test_beams_are_copied(tmp_path, made):
     assert "no finished run" in update.unfinished_example(tmp_path, target="devices")
-    monkeypatch.setattr(update, "DOCS", tmp_path / "docs")
-    for part in ("tables", "pictures"):
-        (tmp_path / "docs" / part).mkdir(parents=True)
     for kind in ("csv", "md"):
         (tmp_path / f"prediction.{kind}").write_text(kind)
     Image.new("RGB", (20, 10)).save(tmp_path / "prediction.png")
     update.collect_beams(tmp_path)
-    made = {path.name for path in (tmp_path / "docs").rglob("*.*")}
-    assert made == {"drawn_beams.csv", "drawn_beams.md", "drawn_beams.png"}
+    assert made() == {"drawn_beams.csv", "drawn_beams.md", "drawn_beams.png"}
 
 
-def test_tables_and_picture_of_the_supplement_are_copied(tmp_path, monkeypatch):
+def test_tables_and_picture_of_the_supplement_are_copied(tmp_path, made):
     runs = tmp_path / "runs"
     assert "supplement/sizes" in update.unfinished_supplement(runs)
-    monkeypatch.setattr(update, "DOCS", tmp_path / "docs")
-    for part in ("tables", "pictures"):
-        (tmp_path / "docs" / part).mkdir(parents=True)
     for place in update.SUPPLEMENT.values():
         (runs / place).parent.mkdir(parents=True, exist_ok=True)
         for kind in ("csv", "md"):
@@ -153,25 +151,20 @@ def test_tables_and_picture_of_the_supplement_are_copied(tmp_path, monkeypatch):
     Image.new("RGB", (20, 10)).save(runs / "supplement" / "supplement.png")
     assert not update.unfinished_supplement(runs)
     update.collect_supplement(runs)
-    made = {path.name for path in (tmp_path / "docs").rglob("*.*")}
     tables = {f"{name}.{kind}" for name in update.SUPPLEMENT for kind in ("csv", "md")}
-    assert made == tables | {"supplement.png"}
-    assert made <= {path.name for folder in ("tables", "pictures") for path in (DOCS / folder).iterdir()}
+    assert made() == tables | {"supplement.png"}
+    assert made() <= {path.name for folder in ("tables", "pictures") for path in (DOCS / folder).iterdir()}
 
 
-def test_tables_and_picture_of_the_benchmark_are_copied(tmp_path, monkeypatch):
+def test_tables_and_picture_of_the_benchmark_are_copied(tmp_path, made):
     assert "no finished run" in update.unfinished_validation(tmp_path)
-    monkeypatch.setattr(update, "DOCS", tmp_path / "docs")
-    for part in ("tables", "pictures"):
-        (tmp_path / "docs" / part).mkdir(parents=True)
     for file in update.VALIDATION.values():
         (tmp_path / file).write_text(file)
     Image.new("RGB", (20, 10)).save(tmp_path / "validation.png")
     assert not update.unfinished_validation(tmp_path)
     update.collect_validation(tmp_path)
-    made = {path.name for path in (tmp_path / "docs").rglob("*.*")}
-    assert made == {*update.VALIDATION, "validation.png"}
-    assert made <= {path.name for folder in ("tables", "pictures") for path in (DOCS / folder).iterdir()}
+    assert made() == {*update.VALIDATION, "validation.png"}
+    assert made() <= {path.name for folder in ("tables", "pictures") for path in (DOCS / folder).iterdir()}
 
 
 def test_sentences_of_the_pages_with_test_beams_and_one_picture_are_copied(tmp_path, monkeypatch):

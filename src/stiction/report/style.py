@@ -10,7 +10,7 @@ from contextvars import ContextVar
 from itertools import chain, islice
 from pathlib import Path
 from string import ascii_lowercase
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib import colormaps, rcParams, style
@@ -412,12 +412,18 @@ def png(figure: Figure) -> bytes:
     return content.getvalue()
 
 
-@styled
-def strips(figure: Figure) -> list[bytes]:
-    """Pictures of the panels of a figure that was drawn for a page, from top to bottom.
+class Picture(NamedTuple):
+    """Part of a figure of a page, as wide as the figure."""
 
-    A legend of the figure is part of the panel below it, or of the last one. A page arranges the panels in as many
-    columns as fit.
+    content: bytes
+    is_legend: bool = False  #: whether it explains all panels beside it
+
+
+@styled
+def strips(figure: Figure) -> list[Picture]:
+    """Panels of a figure that was drawn for a page, and its legends outside of them, from top to bottom.
+
+    A page arranges panels in as many columns as fit. A legend has a line of its own.
     """
     canvas = FigureCanvasAgg(figure)
     for panel in figure.axes:
@@ -426,12 +432,12 @@ def strips(figure: Figure) -> list[bytes]:
     canvas.draw()
     pixels, around = np.asarray(canvas.buffer_rgba()), _AROUND * figure.dpi
     shown, legends = ([_ends(canvas, artist) for artist in parts] for parts in (figure.axes, _legends(figure)))
-    pictures = []
-    for low, high in _with_legends(_joined(shown), legends):
+    parts = []
+    for low, high in _joined(shown + legends):
         ends = len(pixels) - np.array([high + around, low - around])
         top, bottom = np.clip(ends, 0, len(pixels)).round().astype(int)
-        pictures.append(picture(pixels[top:bottom, :, :3]))
-    return pictures
+        parts.append(Picture(picture(pixels[top:bottom, :, :3]), (low, high) in legends))
+    return parts
 
 
 def picture(pixels: np.ndarray) -> bytes:
@@ -457,15 +463,6 @@ def _ends(canvas, artist):
 def _legends(figure):
     """Legends of a figure and its parts that are outside of panels."""
     return [*figure.legends, *chain.from_iterable(block.legends for block in figure.subfigs)]
-
-
-def _with_legends(strips, legends):
-    """Strips from top to bottom, each with the legends between it and the one above; the last with those below it."""
-    strips = [list(ends) for ends in strips]
-    for low, high in legends:
-        below = next((strip for strip in strips if strip[0] < low), strips[-1])
-        below[:] = min(low, below[0]), max(high, below[1])
-    return strips
 
 
 def _joined(intervals):

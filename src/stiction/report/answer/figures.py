@@ -14,6 +14,7 @@ from stiction.devices.probes import UNLIKELY
 from stiction.devices.risk import one_in
 from stiction.plan.names import by_name
 from stiction.report.answer import tables, words
+from stiction.report.format import safe_size
 from stiction.report.style import (
     BUILD,
     OUTLINED,
@@ -81,7 +82,7 @@ def _label_of_row(answer, row):
     """Cause of a row of the ladder with its size and change."""
     step = answer.known_steps[row]
     change = f" ({100 * (step.factor - 1):+.1f} %)" if row else ""
-    return f"{textwrap.fill(words.CAUSES[step.cause][0], _WIDE)}\n{answer.in_words(step.size)}{change}"
+    return f"{textwrap.fill(words.CAUSES[step.cause][0], _WIDE)}\n{safe_size(step.size, answer.sought)}{change}"
 
 
 def _stated(panel, answer, scale):
@@ -196,7 +197,7 @@ def _size_to_build(panel, answer, scale):
         )
         side, end = (3, "left") if answer.sought.more_is_better else (-3, "right")  # clear of the curve
         style = {"xytext": (side, -3), "textcoords": "offset points", "ha": end, "va": "top", "rotation": 90}
-        label = f"build {answer.in_words(answer.build)}"
+        label = f"build {safe_size(answer.build, answer.sought)}"
         panel.annotate(label, (answer.build / scale, 1), xycoords=("data", "axes fraction"), color=BUILD, **style)
     if answer.sizes.min() < answer.size < answer.sizes.max():
         panel.axvline(answer.size / scale, color="0.3", linestyle=":", linewidth=1, label="stated size")

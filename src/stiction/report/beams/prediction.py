@@ -22,6 +22,7 @@ from stiction.report.style import (
     plain_log,
     styled,
 )
+from stiction.report.table import Term
 
 #: Probabilities of the intervals.
 COVERAGES = (0.68, 0.95)
@@ -84,14 +85,15 @@ def count_contained(table: pd.DataFrame, coverage: float) -> tuple[int, int]:
     return int(compared.experiment_um.between(low, high).sum()), len(compared)
 
 
-def caption(table: pd.DataFrame) -> str:
+def caption(table: pd.DataFrame) -> Term:
     """Meaning of the columns, and how many measured lengths they contain."""
     stated = [(_percent(coverage), *count_contained(table, coverage)) for coverage in COVERAGES]
     number = " and ".join(f"{inside}" for _, inside, _ in stated)
-    return (
-        f"{' and '.join(name for name, *_ in stated)}: prediction intervals of a measured length, with the form of the "
+    return Term(
+        " and ".join(name for name, *_ in stated),
+        "prediction intervals of a measured length, with the form of the "
         "model as an error: a factor, a slope over ln l_s and a rest, learnt from the measured lengths of the paper's "
-        f"other pairs, and the standard error. They contain {number} of {stated[0][2]} measured lengths."
+        f"other pairs, and the standard error. They contain {number} of {stated[0][2]} measured lengths.",
     )
 
 

@@ -26,7 +26,7 @@ from stiction.report.style import (
     letter_lines,
     styled,
 )
-from stiction.report.table import PAIR, Table, table_stage
+from stiction.report.table import PAIR, Table, Term, table_stage
 from stiction.stages.beams.releases import stuck_lengths
 from stiction.stages.contact import full_contact
 from stiction.stages.contact.asperities import cost, energies_of_readings
@@ -36,9 +36,13 @@ _CAPTION = (
     "energies of the same strips to the power -1/4: change against spheres on summits, on the grid of the contact and "
     "with attraction of the solids, at the lowest and at the highest humidity; root mean square over the humidities of "
     "the deviation from the published length, and from the length under full elastic contact, if computed; "
-    "processor time of a strip over that of spheres on summits; ± standard error over strips. Island: a sphere of the "
-    "area of every island; fitted: a sphere by least squares; shape: every island with its true shape, solved alone. "
-    "Van der Waals: the medium through which the solids attract, or none."
+    "processor time of a strip over that of spheres on summits; ± standard error over strips.",
+    Term(
+        "Island",
+        "a sphere of the area of every island; fitted: a sphere by least squares; shape: every island with its true "
+        "shape, solved alone.",
+    ),
+    Term("Van der Waals", "the medium through which the solids attract, or none."),
 )
 
 

@@ -23,16 +23,20 @@ from stiction.report.style import (
     marker,
     styled,
 )
-from stiction.report.table import Table, table_stage
+from stiction.report.table import Table, Term, table_stage
 
 #: Distance of the bars of a humidity from those of the one before [in].
 _ASIDE = 0.05
 
-_CAPTION = (
+_STRIPS = (
     "Adhesion after surfaces were pressed together once: ratio of the mean adhesion energy ē to that before, at each "
     "relative humidity, ± standard error over {strips} strips; by full contact with pressures up to the hardness, and "
-    "flattening that remains. The first line of a pair is what its adhesion alone does. Pressure: mean of the strips; "
-    "at H: share of the elements in contact at the hardness; flattening: largest of an element, mean of the strips."
+    "flattening that remains. The first line of a pair is what its adhesion alone does."
+)
+_PRESSURE = Term(
+    "Pressure",
+    "mean of the strips; at H: share of the elements in contact at the hardness; flattening: largest of an element, "
+    "mean of the strips.",
 )
 
 
@@ -66,7 +70,7 @@ def table(studies: Mapping[str, xr.Dataset]) -> Table:
     """Numbers of every press and humidity, and a line for each press. Parameters as in ``_rows``."""
     frame = pd.DataFrame(_rows(studies))
     lines = [_line(*group) for group in frame.groupby(["pair", "press"], sort=False)]
-    return Table(frame, _CAPTION.format(strips=frame.strips.max()), pd.DataFrame(lines))
+    return Table(frame, [_STRIPS.format(strips=frame.strips.max()), _PRESSURE], pd.DataFrame(lines))
 
 
 def _line(key, rows):

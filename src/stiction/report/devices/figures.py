@@ -19,7 +19,7 @@ from stiction.devices.risk import one_in
 from stiction.plan.names import by_name
 from stiction.report.answer.tables import of_datasets
 from stiction.report.answer.words import is_forbidden
-from stiction.report.format import TO_UM, UM, fraction_with_band
+from stiction.report.format import TO_UM, UM, fraction_with_band, safe_size
 from stiction.report.limits.words import numbered, with_numbers
 from stiction.report.style import (
     BUILD,
@@ -197,7 +197,7 @@ def _mark_size_to_build(panel, name, answer, placed):
     """Mark the size to build of a device, with all that it states, in the air that decides; none that is forbidden."""
     if np.isfinite(answer.build) and not is_forbidden(answer):
         air = answer.together.humidity
-        at, label = placed.get(air, air), f"to build {name} as it is stated: {answer.in_words(answer.build)}"
+        at, label = placed.get(air, air), f"to build {name} as it is stated: {safe_size(answer.build, answer.sought)}"
         panel.plot(at, TO_UM * answer.build, "D", color=BUILD, markersize=5, zorder=4, label=label)
 
 

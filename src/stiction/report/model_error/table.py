@@ -27,7 +27,7 @@ from stiction.report.style import (
     letter_lines,
     styled,
 )
-from stiction.report.table import PAIR, Table, table_stage
+from stiction.report.table import PAIR, Table, Term, table_stage
 from stiction.stages.beams.releases import stuck_lengths
 from stiction.stages.beams.variant_beams import cases_of
 from stiction.stages.contact.corrections import in_all_air
@@ -35,10 +35,13 @@ from stiction.stages.contact.corrections import in_all_air
 _CAPTION = (
     "Error of the model of the contact: adhesion energy ē of full elastic contact over that of the sum over summits, "
     "of the same {strips} strips, ± standard error over strips; by how much full contact lengthens the crack, and the "
-    "crack lengths of Table III, model NG, without and with it. Beams: the same by beams on corrected force laws, in "
-    "which e and f_max of all samples are multiplied by their ratios, ± standard error over beams. It has one sign and "
-    "is no random error: it is not part of any standard error. * interpolated between the humidities at which full "
-    "contact was computed, with the error of the interpolation."
+    "crack lengths of Table III, model NG, without and with it."
+)
+_BEAMS = Term(
+    "Beams",
+    "the same by beams on corrected force laws, in which e and f_max of all samples are multiplied by their ratios, ± "
+    "standard error over beams. It has one sign and is no random error: it is not part of any standard error. * "
+    "interpolated between the humidities at which full contact was computed, with the error of the interpolation.",
 )
 
 
@@ -100,7 +103,7 @@ def _beam_change(case, variants):
 def table(*data) -> Table:
     """Error of the model for every case. Parameters as in ``_rows``."""
     rows = _rows(*data)
-    return Table.of(rows, _CAPTION.format(strips=rows[0]["strips"]), _COLUMNS)
+    return Table.of(rows, [_CAPTION.format(strips=rows[0]["strips"]), _BEAMS], _COLUMNS)
 
 
 _COLUMNS = PAIR | {
