@@ -17,6 +17,7 @@ from stiction.report.answer import tables, words
 from stiction.report.format import safe_size
 from stiction.report.style import (
     BUILD,
+    DOUBLE,
     OUTLINED,
     SINGLE,
     at_most_double,
@@ -24,10 +25,10 @@ from stiction.report.style import (
     figure_stage,
     handles,
     humidity_colour,
-    is_page,
     legend_below,
     legend_outside,
     letter_lines,
+    page_width,
     panels,
     styled,
 )
@@ -126,9 +127,9 @@ def _title(name, answer):
 
 
 def _wrapped(line):
-    """Line above one of three panels as lines that fit there, with a humidity whole. A page has room."""
-    whole = line.replace("RH ", "RH\N{NO-BREAK SPACE}")
-    return [whole] if is_page() else textwrap.wrap(whole, _LINE)
+    """Line above one of three panels, or above one on a page, as lines that fit there, with a humidity whole."""
+    fitting = int(_LINE * page_width(DOUBLE / 3) / (DOUBLE / 3))
+    return textwrap.wrap(line.replace("RH ", "RH\N{NO-BREAK SPACE}"), fitting)
 
 
 def _stuck(panel: Axes, answer):
@@ -165,7 +166,9 @@ def _stuck(panel: Axes, answer):
 
 def _stricter(panel, answer, scale):
     """Marks of the sizes that are stricter than the size to build, at the allowed fraction; these sizes."""
-    sizes = [one.size / scale for one in (answer.between, *answer.unasked) if one]
+    beside = [one.size for one in (answer.between, *answer.unasked) if one]
+    build = safe_size(answer.build, answer.sought)
+    sizes = [size / scale for size in beside if safe_size(size, answer.sought) != build]  # as they are stated
     if sizes:
         panel.plot(sizes, [answer.share] * len(sizes), **_STRICTER, label="stricter sizes, in the titles")
     return sizes
