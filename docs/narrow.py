@@ -1,5 +1,6 @@
 """Pictures of the docs: figures of a run, drawn as on pages, with panels below each other and text for a phone."""
 
+from collections.abc import Iterable
 from pathlib import Path
 
 from matplotlib.figure import Figure
@@ -12,7 +13,7 @@ from stiction.report.style import SINGLE, on_a_page, save
 from stiction.run import storage
 
 
-def draw(folder: Path, into: Path, names: list[str], *overlays: Path) -> None:
+def draw(folder: Path, into: Path, names: Iterable[str], *overlays: Path) -> None:
     """Draw figures of a run in a working folder and save them into another one.
 
     Parameters
@@ -20,7 +21,7 @@ def draw(folder: Path, into: Path, names: list[str], *overlays: Path) -> None:
     folder
         Working folder of the run, with ``results``.
     names
-        Of the figures; those that the configuration does not have are left out.
+        Of the figures.
     overlays
         Configuration files of the run.
     """

@@ -4,6 +4,7 @@ import importlib
 import importlib.util
 import json
 import re
+import shutil
 import subprocess
 import sys
 from dataclasses import replace
@@ -22,10 +23,12 @@ from PIL import Image
 import stiction
 from stiction.answer.data import Cause
 from stiction.config.relations import schema
-from stiction.plan.graph import stages
+from stiction.plan.graph import Graph, stages
+from stiction.plan.plan import Plan
 from stiction.report.checks import RESOLVED
 from stiction.report.style import DOUBLE, SINGLE, STYLE, panels, save
 from stiction.run import storage
+from stiction.run.atomic import DataError
 from stiction.stages.devices import prediction
 from stiction.surface.feasible import nearest_feasible
 
@@ -324,6 +327,26 @@ def test_pictures_are_small_in_full_colours_and_all_shown():
     for path in (path for path in pictures if path.suffix == ".png"):
         with Image.open(path) as picture:
             assert picture.mode == "RGB", f"{path.name} has a palette"
+
+
+def test_figures_are_drawn_from_tables_and_datasets_of_a_run_as_wide_as_a_column(tmp_path):
+    plan, heights = Plan(stiction.load()), np.linspace(-3, 3, 7)
+    (tmp_path / "results" / "tables").mkdir(parents=True)
+    shutil.copyfile(DOCS / "tables" / "table_3.csv", tmp_path / "results" / "tables" / "table_3.csv")
+    for name in plan.surfaces:
+        density = ("height", np.exp(-(heights**2) / 2) / np.sqrt(2 * np.pi))
+        found = xr.Dataset({"density": density, "rms": 3e-9}, {"height": heights})
+        (tmp_path / "results" / "heights").mkdir(exist_ok=True)
+        storage.save(found, tmp_path / "results" / "heights" / f"{name}.nc", "heights", {})
+    for name, panels_drawn in (("intervals", 3), ("figure_07", 2 * len(plan.surfaces))):
+        job = Graph(plan).job(f"figures/{name}.png")
+        figure = update.narrow.figure_of(tmp_path, job)
+        assert len(figure.axes) == panels_drawn
+        assert figure.get_figwidth() == SINGLE
+    update.narrow.draw(tmp_path, tmp_path, ["intervals"], ROOT / "config.yaml")
+    assert pixels_of_text(tmp_path / "intervals.png") >= READABLE
+    with pytest.raises(DataError, match=r"heights/\w+.nc"):
+        update.narrow.figure_of(tmp_path / "results", job)
 
 
 def pixels_of_text(path):

@@ -383,8 +383,8 @@ def test_figure_17_shows_the_variance_lost_without_the_last_coordinate_at_every_
     panel = figures_studies.sample_convergence(sizes(), errors, 1e-6).axes[1]
     for line in panel.lines[:2]:
         assert_allclose(line.get_xydata(), [[0.5, 5e-4], [0.9, 9e-4]])
-    assert "variance lost with 3 coordinates" in panel.get_title("left")
-    assert panel.get_legend_handles_labels()[1][-1] == "tolerance: 4 are kept", "curves above it tell why"
+    assert "$N_g$ = 3" in panel.get_title("left")
+    assert panel.get_legend_handles_labels()[1][-1] == "tolerance,\nabove: 4 kept"
 
 
 def test_figure_18_shows_the_cumulative_probabilities_of_samples_and_orders():

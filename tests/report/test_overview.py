@@ -82,7 +82,7 @@ def test_overview_is_written_without_a_warning_and_no_panel_covers_another(tmp_p
     boxes = [axes.get_tightbbox() for axes in figure.axes if axes.get_label() != "<colorbar>"]
     for left, right in zip(boxes, boxes[1:], strict=False):
         assert left.x1 < right.x0
-    assert tuple(figure.get_size_inches()) == (7.2, 2.2)
+    assert tuple(figure.get_size_inches()) == (7.2, 2.4)
 
 
 def test_equal_data_give_equal_files(tmp_path):

@@ -91,17 +91,18 @@ def test_legends_are_below_all_panels_and_name_what_is_drawn_once():
 
 
 def test_stricter_sizes_are_marked_at_the_allowed_fraction_and_stated_in_the_title():
-    between, dried = Between(0.8, 138e-6), Unasked(f"{Name.COLLAPSE}_water", "longest beam that stands", 90e-6)
+    between, dried = Between(0.8, 138e-6, 137e-6), Unasked(f"{Name.COLLAPSE}_water", "longest beam that stands", 90e-6)
     (panel,) = risk({"C1": answered(between=between, unasked=(dried,))}).axes
     (marks,) = (line for line in panel.lines if line.get_label() == "stricter sizes, in the titles")
     np.testing.assert_allclose(marks.get_xydata(), [[138, 1e-3], [90, 1e-3]])
     assert panel.get_xlim()[0] < 90 < 1e6 * SIZES[0], "the axis reaches them"
     assert panel.get_title(loc="left").splitlines() == [
         "C1, cantilever",
-        "stricter: 138 µm between these airs (RH 0.8)",
+        "stricter: 138 µm between these airs",
+        "(interpolated: state RH\N{NO-BREAK SPACE}0.8)",
         "stricter: 90 µm if water dries on it",
     ]
-    (without,) = risk({"C1": answered()}).axes
+    (without,) = risk({"C1": answered(between=Between(0.8, 140.4e-6, 140e-6))}).axes  # reads as the size to build
     assert not any(line.get_marker() == "v" for line in without.lines)
 
 

@@ -2,6 +2,7 @@
 
 import textwrap
 from collections.abc import Mapping
+from itertools import chain
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -16,6 +17,7 @@ from stiction.report.answer import tables, words
 from stiction.report.format import safe_size
 from stiction.report.style import (
     BUILD,
+    DOUBLE,
     OUTLINED,
     SINGLE,
     at_most_double,
@@ -26,6 +28,7 @@ from stiction.report.style import (
     legend_below,
     legend_outside,
     letter_lines,
+    page_width,
     panels,
     styled,
 )
@@ -41,6 +44,8 @@ _STUCK, _LOWEST = "P(stuck) [–]", 1 / 30
 _WIDE = 26
 #: Colour and marker of sizes that are stricter than the size to build.
 _STRICTER = {"color": "black", "marker": "v", "linestyle": "", "markersize": 6}
+#: Most characters of a line above one of three panels.
+_LINE = 38
 #: Place of the label of a fraction.
 _LABEL = {"xycoords": ("axes fraction", "data"), "va": "bottom", "fontsize": 7, "path_effects": OUTLINED}
 
@@ -117,7 +122,14 @@ def risk(answers: Mapping[str, Answer]) -> Figure:
 def _title(name, answer):
     """Name and kind of a device, and below it the sizes that are stricter than the size to build."""
     stricter = [] if words.is_forbidden(answer) else words.stricter(answer)
-    return "\n".join([f"{name}, {answer.kind}", *(f"stricter: {size}" for size in stricter)])
+    lines = [_wrapped(f"stricter: {size}") for size in stricter]
+    return "\n".join([f"{name}, {answer.kind}", *chain.from_iterable(lines)])
+
+
+def _wrapped(line):
+    """Line above one of three panels, or above one on a page, as lines that fit there, with a humidity whole."""
+    fitting = int(_LINE * page_width(DOUBLE / 3) / (DOUBLE / 3))
+    return textwrap.wrap(line.replace("RH ", "RH\N{NO-BREAK SPACE}"), fitting)
 
 
 def _stuck(panel: Axes, answer):
@@ -154,7 +166,9 @@ def _stuck(panel: Axes, answer):
 
 def _stricter(panel, answer, scale):
     """Marks of the sizes that are stricter than the size to build, at the allowed fraction; these sizes."""
-    sizes = [one.size / scale for one in (answer.between, *answer.unasked) if one]
+    beside = [one.size for one in (answer.between, *answer.unasked) if one]
+    build = safe_size(answer.build, answer.sought)
+    sizes = [size / scale for size in beside if safe_size(size, answer.sought) != build]  # as they are stated
     if sizes:
         panel.plot(sizes, [answer.share] * len(sizes), **_STRICTER, label="stricter sizes, in the titles")
     return sizes

@@ -17,8 +17,10 @@ from stiction.report.style import (
     MODELS,
     PUBLISHED,
     figure_stage,
+    handles,
     humidity_axis,
     is_page,
+    legend_outside,
     letter,
     panels,
     places,
@@ -27,7 +29,7 @@ from stiction.report.style import (
 from stiction.stages.beams.releases import ends_as, stuck_lengths
 from stiction.stages.laws import forces as stage_forces
 
-_SIZE = 7.2, 2.2
+_SIZE = 7.2, 2.4
 _COLOUR = MODELS["NG"]["color"]
 #: Lines of all curves, and of highlighted ones.
 _PALE, _FULL = {"color": "0.75", "linewidth": 0.4}, {"color": _COLOUR, "linewidth": 0.6}
@@ -66,7 +68,12 @@ def overview(
     _forces(curves, forces)
     _shapes(shapes, beams)
     _lengths(lengths, released, rows(published, pair=pair))
-    letter(axes, ["rough surface", "adhesive force", "released beams", "crack length, mean ± std"])
+    letter(axes, ["rough surface", "adhesive force", "released beams", "crack length"])
+    if is_page():
+        for panel, place in zip(axes[1:], ("lower right", "upper right", "best"), strict=True):
+            panel.legend(loc=place)
+    else:  # small panels have no room
+        legend_outside(figure, handles(*axes), "lower", 8)
     return figure
 
 
@@ -89,7 +96,7 @@ def _forces(panel, forces):
     deepest = -force.min(axis=1)
     lines = [np.column_stack([TO_NM * distance, TO_MPA * f])[f < _REPULSION * deepest.max()] for f in force]
     panel.axhline(0, color="black", linewidth=0.5)
-    for shown, style, label in ((lines, _PALE, "each strip"), (lines[:_HIGHLIGHTED], _FULL, "a few of them")):
+    for shown, style, label in ((lines, _PALE, "force on each strip"), (lines[:_HIGHLIGHTED], _FULL, "a few of them")):
         panel.add_collection(LineCollection(shown, **style, rasterized=shown is lines))
         panel.plot([], [], **style, label=label)
     vector, limit = stage_forces.vectors(forces)
@@ -105,21 +112,19 @@ def _forces(panel, forces):
     panel.plot(TO_NM * near[below], TO_MPA * pressure[below], color="black", linestyle="--", label="a fitted law")
     panel.set(xlim=(TO_NM * first, TO_NM * last), ylim=TO_MPA * deepest.max() * np.array([-1.08, _REPULSION]))
     panel.set(xlabel=r"distance $\bar d$ [nm]", ylabel=r"force per area $\bar f$ [MPa]")
-    panel.legend(loc="lower right")
 
 
 def _shapes(panel, beams):
     """Shapes of the first beams, one S-shaped beam highlighted."""
     deflection, x = TO_UM * beams.deflection.values, TO_UM * beams.node.values
     panel.plot(x, deflection.T, **_PALE, rasterized=True)
-    panel.plot([], [], **_PALE, label="each beam")
+    panel.plot([], [], **_PALE, label="shape of each beam")
     for k in np.flatnonzero(ends_as(beams, "S-shape")[: len(deflection)])[:1]:
         panel.plot(x, deflection[k], color=_COLOUR, linewidth=1.6, label="one that sticks")
     ground = deflection.max()
     panel.axhspan(ground, 1.14 * ground, color="0.35")
     panel.text(x[-1] / 2, 1.07 * ground, "substrate", color="white", ha="center", va="center", fontsize=7)
     panel.set(xlabel="position [µm]", ylabel="deflection [µm]", xlim=x[[0, -1]], ylim=(1.14 * ground, -0.06 * ground))
-    panel.legend(loc="upper right")
 
 
 def _lengths(panel, released, published):
@@ -145,13 +150,12 @@ def _lengths(panel, released, published):
     style |= {"fmt": "o-", "label": "computed here"}
     aside = _APART if len(published) else 0.0
     panel.errorbar(humidity[~dry] - aside, mean[~dry], deviation[~dry], **style)
-    panel.set(xlabel="relative humidity [–]", ylabel="crack length $l_s$ [µm]")
+    panel.set(xlabel="relative humidity [–]", ylabel="crack length $l_s$, mean ± std [µm]")
     panel.margins(y=0.12)
     if len(humidity) > _FEW:
         low, high = panel.get_ylim()
         panel.set_ylim(low, high + 0.3 * (high - low))  # room for the legend
     humidity_axis(panel, placed)
-    panel.legend()
 
 
 STAGES = (

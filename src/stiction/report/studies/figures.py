@@ -47,6 +47,8 @@ from stiction.stages.laws.stored_model import chaos_model
 _ZERO = {"color": "0.6", "linewidth": 0.6, "zorder": 0}
 #: Difference of Γ from ē [%] that the paper states for its elements.
 _PAPER_ERROR = 2.5
+#: End of the axis of the errors of meshes over their largest, with room for a legend.
+_HEADROOM = 30
 #: Number of summits per cell that is drawn in white; a single summit is a little darker.
 _FAINTEST = 0.3
 _BOUND = {"color": "0.4", "linestyle": ":"}
@@ -181,12 +183,12 @@ def sample_convergence(
     figure, (axes,) = panels(1, 3, (DOUBLE, 2.4), width_ratios=(1.3, 1, 1))
     _densities(axes[0], sizes)
     most = _dimension_errors(axes[1], dimension_errors)
-    axes[1].axhline(tolerance, **_BOUND, label=f"tolerance: {most + 1} are kept")
+    axes[1].axhline(tolerance, **_BOUND, label=f"tolerance,\nabove: {most + 1} kept")
     low, high = axes[1].get_ylim()
     axes[1].set_ylim(min(low, tolerance / 2), 10 * max(high, tolerance))  # room for the legend
     _distances(axes[2], sizes)
     legends(figure, {axes[0]: {}, axes[1]: {"loc": "upper right", "ncols": 2}})
-    letter(axes, [r"density of $\bar e$", f"variance lost with {most} coordinates", "distance from all samples"])
+    letter(axes, [r"density of $\bar e$", f"variance lost, $N_g$ = {most}", "distance from all samples"])
     return figure
 
 
@@ -320,7 +322,7 @@ def _meshes(panel, mesh):
     panel.axhline(0, **_ZERO)
     panel.set_yscale("symlog", linthresh=_PAPER_ERROR, linscale=0.5)
     panel.yaxis.set_major_formatter("{x:g}")
-    panel.set_ylim(1.3 * np.nanmin(excess, initial=-1), 1.5 * np.nanmax(excess, initial=_PAPER_ERROR))
+    panel.set_ylim(1.3 * np.nanmin(excess, initial=-1), _HEADROOM * np.nanmax(excess, initial=_PAPER_ERROR))
     panel.set(xscale="log", xlabel="element length $l_e$ [µm]", ylabel=r"$\Gamma/\bar e - 1$ [%]")
     # Set limits: a beam that does not stick under this law has no points.
     panel.set_xlim(TO_UM * mesh.element_length.values.min() / 1.2, 1.2 * TO_UM * mesh.element_length.values.max())
