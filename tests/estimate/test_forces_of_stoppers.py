@@ -156,7 +156,7 @@ def test_a_spring_has_the_force_of_its_gap():
         ({"voltage_V": 3}, "voltage_V"),
         ({"humidities": [0.0]}, "dry"),
         ({"humidities": [0.999]}, "beyond what was learnt"),
-        ({"kind": "probe", "radius_um": 5}, "only cantilevers and stoppers"),
+        ({"kind": "probe", "radius_um": 5}, "only cantilevers, bridges and stoppers"),
     ],
 )
 def test_a_stopper_that_was_not_learnt_has_no_number(keys, reason):

@@ -13,6 +13,7 @@ import xarray as xr
 
 from stiction.contact.air import humid
 from stiction.estimate.answer import CONFIDENCES, in_one_air
+from stiction.estimate.bridge import Bridge
 from stiction.estimate.complete import question_of
 from stiction.estimate.force import Stopper
 from stiction.estimate.length import NotLearnt
@@ -21,7 +22,6 @@ from stiction.estimate.statistics import Heights, moments_of
 from stiction.estimate.table import FILE, known
 from stiction.models import SIDES
 from stiction.plan.stage import File, Stage, select
-from stiction.stages.devices.opening import EITHER
 from stiction.stages.devices.results import results_of
 from stiction.surface.spectrum import CutoffSelfAffine
 
@@ -52,14 +52,15 @@ class AskedSurface:
 
 
 @dataclass(frozen=True)
-class AskedCantilever:
-    """Cantilever on two surfaces, as the estimate knows it."""
+class AskedBeam:
+    """Cantilever or bridge on two surfaces, as the estimate knows it."""
 
     beam: AskedSurface
     substrate: AskedSurface
     thickness: float  #: [m]
     gap: float  #: [m]
     width: float  #: [m]
+    residual_stress: float | None = None  #: of a bridge [Pa]
 
     @property
     def sides(self) -> list[AskedSurface]:
@@ -69,19 +70,20 @@ class AskedCantilever:
     @property
     def sizes(self) -> dict[str, Any]:
         """Variables of its own numbers."""
-        return {name: ((), getattr(self, name)) for name in ("thickness", "gap", "width")}
+        stated = {name: getattr(self, name) for name in ("thickness", "gap", "width", "residual_stress")}
+        return {name: ((), value) for name, value in stated.items() if value is not None}
 
-    def question(self, air: float) -> Question:
+    def question(self, air: float) -> Question | Bridge:
         """Question about one air [-]."""
-        surfaces, exact = tuple(side.heights for side in self.sides), ({}, {})
-        return Question("", surfaces, exact, (air,), self.thickness, self.gap, self.width)
+        of = "", tuple(side.heights for side in self.sides), ({}, {}), (air,), self.thickness, self.gap, self.width
+        return Question(*of) if self.residual_stress is None else Bridge(*of, self.residual_stress)
 
 
 @dataclass(frozen=True)
 class Settings:
-    """Numbers of a cantilever, or why the estimate refuses its configuration."""
+    """Numbers of a beam, or why the estimate refuses its configuration."""
 
-    asked: AskedCantilever | None = None
+    asked: AskedBeam | None = None
     refused: str = ""
 
 
@@ -124,7 +126,7 @@ def compute(lengths: Mapping[float, xr.Dataset], settings: Settings) -> xr.Datas
     """Lengths of a run and of the estimate, by humidity and fraction of stuck devices."""
     runs = {}
     for air, of_air in lengths.items():
-        one = of_air.sel(shape=EITHER)
+        one = of_air.isel(shape=-1)  # whatever holds it
         error = np.hypot(one.beams_error, one.surfaces_error.fillna(0))
         runs[air] = one.estimate.where(np.isfinite(one.estimate)), error
     return _beside(runs, settings, "length", "m")
@@ -182,7 +184,7 @@ def stage_of(plan: Any, device: str) -> str | None:
     kind = plan.devices.kind(device)
     if not humid(plan.devices.sections[device]["humidities"]):
         return None
-    if kind.has_tip:
+    if kind.has_tip or kind.has_short_strips:
         return LENGTHS
     return FORCES if kind.is_patch else None
 
@@ -227,6 +229,6 @@ def _stage(name, of, kind, result, compute):
 
 
 STAGES = (
-    _stage(LENGTHS, AskedCantilever, Settings, "lengths", compute),
+    _stage(LENGTHS, AskedBeam, Settings, "lengths", compute),
     _stage(FORCES, AskedStopper, SettingsOfStopper, "stopper", compute_stopper),
 )
