@@ -19,8 +19,8 @@ from stiction.devices.limits.rules import FILMS
 from stiction.plan.plan import Plan
 from stiction.report.beams import prediction
 from stiction.report.checks import COARSER_ACCURACY, RESOLVED
-from stiction.report.devices.life import significant
-from stiction.report.format import MISSING, TO_MJ, TO_UM, number, with_error
+from stiction.report.devices.life import bounds_in_words, significant
+from stiction.report.format import MISSING, TO_MJ, TO_UM, bounding, number, with_error
 from stiction.stages.beams.cantilevers import Cantilevers, cantilever, sections
 from stiction.surface import feasible
 
@@ -107,7 +107,7 @@ def life(frame):
     """``life_C1_voltage``: both bounds of an answer about a device in its unit; ``life_C1_length``: its length [µm]."""
     texts = {}
     for row in frame.itertuples(index=False):
-        bounds = dict.fromkeys(significant(bound) for bound in (row.at_least, row.at_most))
+        bounds = dict.fromkeys(bounds_in_words(row.at_least, row.at_most, row.unit))
         texts[f"life_{row.device}_{row.answer}"] = " to ".join(bounds)
         texts[f"life_{row.device}_length"] = significant(row.length_um)
     return texts
@@ -204,7 +204,8 @@ def sealed(safe_lengths, stoppers):
     """
     texts = {}
     for row in safe_lengths[np.isclose(safe_lengths.share, 1e-3)].itertuples():
-        texts[f"sealed_{row.device}_{'beam' if row.held_by == 'beam' else 'tip'}"] = f"{row.safe_length_um:.0f}"
+        held_by = "beam" if row.held_by == "beam" else "tip"
+        texts[f"sealed_{row.device}_{held_by}"] = bounding(row.safe_length_um, 3, up=False)
     for device, rows in stoppers.groupby("device"):
         first = rows.iloc[0]
         texts[f"sealed_{device}"] = f"{first.pull_off_uN:.2g}"
@@ -625,7 +626,7 @@ def safe_lengths(table):
     texts = {}
     for row in table.itertuples():
         name = f"safe_{row.device}_{_digits(row.relative_humidity)}_{row.share:.0e}".replace("-", "")
-        texts[name + ("_tip" if row.held_by == "beam or tip" else "")] = f"{row.safe_length_um:.0f}"
+        texts[name + ("_tip" if row.held_by == "beam or tip" else "")] = bounding(row.safe_length_um, 3, up=False)
     return texts
 
 
@@ -642,7 +643,7 @@ def stoppers(table):
         texts[f"stuck_{name}"] = f"{100 * row['share_stuck']:.2g}"
         shares = [key.rpartition("_")[2] for key in row if key.startswith("safe_force_uN")]
         texts |= {
-            f"force_{name}_{float(share):.0e}".replace("-", ""): f"{row[f'safe_force_uN_{share}']:.0f}"
+            f"force_{name}_{float(share):.0e}".replace("-", ""): bounding(row[f"safe_force_uN_{share}"], 3, up=True)
             for share in shares
         }
     return texts
@@ -674,12 +675,15 @@ def answers(table):
     """``build_C1``: size to build [µm, µN]; ``step_C1_inputs``: size after a step, and ``factor_C1_inputs`` [%]."""
     texts = {}
     for row in table.to_dict("records"):
-        digits, before = ".3g" if row["unit"] == "µN" else ".0f", row["after_estimate"]
-        texts |= {f"build_{row['device']}": f"{row['to_build']:{digits}}", f"measure_{row['device']}": row["measure"]}
+        up, before = row["unit"] == "µN", row["after_estimate"]
+        texts |= {
+            f"build_{row['device']}": bounding(row["to_build"], 3, up),
+            f"measure_{row['device']}": row["measure"],
+        }
         for cause in Cause:
             size = row[f"after_{cause}"]
             if np.isfinite(size):
-                texts[f"step_{row['device']}_{cause}"] = f"{size:{digits}}"
+                texts[f"step_{row['device']}_{cause}"] = bounding(size, 3, up)
                 texts[f"change_{row['device']}_{cause}"] = f"{100 * (size / before - 1):+.1f}".replace("-", "−")
                 before = before if cause is Cause.FAST else size
     return texts

@@ -42,13 +42,13 @@ def test_whatever_fills_a_template_is_text(template):
 
 def test_no_line_ends_between_the_thousands_of_a_number():
     cells = pd.DataFrame({"at least": ["154 000", "1 234 567 g", "12 3"], "number": [1.5, 2.5, 3.5]})
-    shown = html.rendered("table.html", title="Life", cells=cells, caption="")
+    shown = html.rendered("table.html", title="Life", cells=cells, parts=())
     for text in ("154\N{NO-BREAK SPACE}000", "1\N{NO-BREAK SPACE}234\N{NO-BREAK SPACE}567 g", "12 3", "1.5"):
         assert f"<td>{text}</td>" in shown
 
 
 def test_a_value_that_a_template_lacks_is_an_error():
-    with pytest.raises(UndefinedError, match="'caption' is undefined"):
+    with pytest.raises(UndefinedError, match="'parts' is undefined"):
         html.rendered("table.html", title="Table 3", cells=pd.DataFrame({"pair": ["b"]}))
 
 

@@ -44,6 +44,6 @@ def test_an_unknown_error_is_no_error_of_zero():
     ],
 )
 def test_the_caption_says_whether_it_is_in_the_prediction(applied, words):
-    caption = column.caption({str(k): error(applied=flag) for k, flag in enumerate(applied)})
+    caption = str(column.caption({str(k): error(applied=flag) for k, flag in enumerate(applied)}))
     assert words in caption
     assert ("bounds contain its standard error" in caption) == any(applied)

@@ -1,4 +1,4 @@
-"""Pictures of a page: each panel with its legend in a file of its own, with few levels of each colour."""
+"""Pictures of a page: each panel, and each legend, in a file of its own, with few levels of each colour."""
 
 import io
 
@@ -48,9 +48,13 @@ def figure_of(panels, place):
 
 
 @pytest.mark.parametrize(("place", "owner"), [("upper", 0), ("lower", -1)])
-def test_a_legend_is_part_of_the_panel_next_to_it(place, owner):
-    pictures = list(map(decoded, strips(figure_of(3, place))))
+def test_a_legend_is_a_picture_of_its_own_so_that_panels_side_by_side_are_aligned(place, owner):
+    parts = strips(figure_of(3, place))
+    pictures = [decoded(part.content) for part in parts]
     has_legend = [bool(((picture[..., 0] > 250) & (picture[..., 1] < 5)).any()) for picture in pictures]
-    assert len(pictures) == 3
-    assert has_legend.count(True) == 1
-    assert has_legend[owner]
+    assert len(parts) == 4
+    assert has_legend == [part.is_legend for part in parts], "not on a panel"
+    assert has_legend.index(True) == range(4)[owner]
+    heights = {len(picture) for picture, part in zip(pictures, parts, strict=True) if not part.is_legend}
+    (of_legend,) = (len(picture) for picture, part in zip(pictures, parts, strict=True) if part.is_legend)
+    assert max(heights) - min(heights) < of_legend / 5, "of equal panels"

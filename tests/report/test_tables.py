@@ -234,12 +234,15 @@ def test_a_table_is_saved_as_numbers_as_markdown_and_as_html(tmp_path):
     assert "<td>620 ± 28</td>" in page
 
 
+MINUS = "\N{MINUS SIGN}"
+
+
 def test_markdown_and_html_show_the_same_text_even_if_it_looks_like_a_number():
     cells = pd.DataFrame({"pair": ["a|b", "c"], "deviation [%]": ["+1.0", "-0.50"]})
     table = tables.Table(pd.DataFrame({"x": [1.0]}), "Caption & units.", cells)
     for text in ("+1.0", "-0.50"):
         assert f" {text} |" in table.markdown
-        assert f"<td>{text}</td>" in table.page("T")
+        assert f"<td>{text.replace('-', MINUS)}</td>" in table.page("T")
     assert '<td class="word">a|b</td>' in table.page("T"), "words from the left, numbers from the right"
     assert table.page("T").count("<td") == 4
 
@@ -247,7 +250,7 @@ def test_markdown_and_html_show_the_same_text_even_if_it_looks_like_a_number():
 def test_a_page_of_a_table_explains_its_terms_below_it_and_leads_back():
     table = tables.Table(
         pd.DataFrame(),
-        tables.with_list("All rows. Limit: the least. Warnings:", ["(1) Too steep: 0.1."]),
+        ["All rows.", tables.Term("Limit", "the least."), *tables.warned(["(1) Too steep: 0.1."])],
         pd.DataFrame({"x": ["1"]}),
     )
     shown = Reading(table.page("T"))
@@ -312,10 +315,12 @@ def test_errors_by_scans_are_columns_of_their_own_and_only_of_measured_pairs():
 def test_text_of_users_in_a_table_is_shown_as_it_is():
     columns = {"file": (str, "file"), "channel": (str, "channel")}
     row = {"file": HOSTILE_FILE, "channel": HOSTILE}
-    table = tables.Table.of([row, row], tables.with_list(f"Scans {HOSTILE}.", [HOSTILE]), columns)
-    for html in (table.page(HOSTILE), rendered(table.markdown)):
+    table = tables.Table.of([row, row], [f"Scans {HOSTILE}.", tables.Line(HOSTILE)], columns)
+    own = Reading(tables.Table.of([{"file": "a", "channel": "b"}], "", columns).page("T"))
+    for html, code in ((table.page(HOSTILE), own.code), (rendered(table.markdown), [])):
         shown = Reading(html)
-        assert [code for code in shown.code if code != "meta"] == []
+        assert [name for name in shown.code if name != "meta"] == [name for name in code if name != "meta"]
+        assert shown.text.get("script", own.text["script"]) == own.text["script"]
         assert shown.text["td"] == [HOSTILE_FILE, HOSTILE] * 2
         assert f"Scans {HOSTILE}." in "".join(shown.text["p"] + shown.text.get("dd", []))
     assert shown.text["li"] == [HOSTILE]

@@ -96,7 +96,7 @@ def test_the_caption_counts_the_measured_lengths_in_their_intervals():
     assert prediction.count_contained(found, 0.95) == (18, 18)
     far = found.assign(experiment_um=np.where(found.pair == "a", 9e9, found.experiment_um))
     assert prediction.count_contained(far, 0.95) == (12, 18)
-    assert "and 12 of 18 measured lengths" in prediction.caption(far)
+    assert "and 12 of 18 measured lengths" in str(prediction.caption(far))
 
 
 def test_scattered_measurements_make_wide_intervals():

@@ -8,7 +8,7 @@ from stiction.config.cases import Case
 from stiction.config.units import from_si
 from stiction.contact.air import Air
 from stiction.devices.risk import one_in
-from stiction.report.format import fraction_with_band
+from stiction.report.format import bounding, fraction_with_band
 from stiction.run import storage
 from stiction.stages.devices.safe_lengths import chosen_share
 from stiction.stages.devices.stoppers import shares_stuck
@@ -39,9 +39,9 @@ def _length(dataset, name):
     length, estimate = (from_si(float(state[name]), "um") for name in ("safe_length", "estimate"))
     error = from_si(float(np.hypot(state.beams_error, state.surfaces_error.fillna(0))), "um")
     with_estimate = f" (estimate {estimate:.0f} ± {error:.2g} µm)" if np.isfinite(error) else ""
-    case = Case(name)
+    case, most = Case(name), bounding(length, 3, up=False)
     return (
-        f"First number: by simulation alone, {case.device} {Air(case.humidity).where} can be {length:.0f} µm long"
+        f"First number: by simulation alone, {case.device} {Air(case.humidity).where} can be {most} µm long"
         f"{with_estimate} if at most {one_in(float(state.share))} may stick."
     )
 

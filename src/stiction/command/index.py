@@ -10,7 +10,6 @@ import json
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +26,7 @@ from stiction.plan.planner import Planner, hashes
 from stiction.plan.stage import WILDCARDS, expression
 from stiction.report.drawings import device_drawing
 from stiction.report.html import rendered
+from stiction.report.limits.words import line_of
 from stiction.report.surfaces.words import surface_in_words
 from stiction.run import stale_results
 from stiction.run.atomic import save_text
@@ -185,8 +185,9 @@ def _by_category(figures: Iterable[Item]) -> dict[str, list[Item]]:
 def _devices(results: Present, config: Mapping, all_items: Sequence[Item]) -> Iterator[dict[str, Any]]:
     """Devices with their first answer, their page and the number of warnings, and a few with drawings."""
     pages, sections = {item.shown for item in all_items}, config.get("devices", {})
-    named = ({device.name for device in subjects} for _, subjects in front_page.limits(results, config))
-    warned = Counter(chain.from_iterable(named))
+    limits = front_page.limits(results, config)
+    lines = {(device.name, line_of(limit)) for limit, subjects in limits for device in subjects}
+    warned = Counter(name for name, _ in lines)
     verdicts = {row["device"]: row for row in csv.DictReader(results.text("tables/devices.csv").splitlines())}
     for name, section in sections.items():
         verdict = verdicts.get(name, {})

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from stiction.config.merging import values
 from stiction.contact.air import Air
 from stiction.plan.stage import File
-from stiction.report.format import fraction_with_band, with_error
+from stiction.report.format import fraction_with_band, lower_to, with_error
 from stiction.report.style import DOUBLE, SINGLE, dashes, figure_stage, letter, marker, panels, styled
 from stiction.report.table import HUMIDITY, Columns, Table, table_stage
 
@@ -34,7 +34,11 @@ SOURCES = (
     ),
     ComparedPart(
         *("safe_lengths", "device", "held_by", "length that a share p holds [µm]", ("estimate_um", "estimate_se_um")),
-        more={"held by": (str, "held_by"), "p": ("g", "share"), "simulated limit [µm]": (".1f", "safe_length_um")},
+        more={
+            "held by": (str, "held_by"),
+            "p": ("g", "share"),
+            "simulated limit [µm]": (lower_to(1), "safe_length_um"),
+        },
         target="devices",
     ),
     ComparedPart(

@@ -1,10 +1,12 @@
 """Units of tables and axes, and numbers as text: with a standard error, as a deviation, or alone."""
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from typing import Any
 
 import numpy as np
 
+from stiction.answer.sought import Sought
 from stiction.config.mission.conditions import humidity_of
 from stiction.contact.air import DRY_AIR, Air, has_dry, humid
 
@@ -17,6 +19,12 @@ TO_NM, TO_UM, TO_UN, TO_MPA, TO_GPA, TO_MJ = 1e9, 1e6, 1e6, 1e-6, 1e-9, 1e3
 MISSING = "–"
 #: Part of a value below which its standard error is rounding.
 _ROUNDING = np.finfo(float).eps
+#: Significant digits of sizes.
+_DIGITS = 3
+#: Fraction beyond which digits of the rest are shown.
+_NEARLY_ALL = 0.99
+#: Nine digits of a number do not show in which units or order it was computed.
+_COMPUTED = Context(prec=9)
 
 
 def percent(value: float, reference: float) -> float:
@@ -42,6 +50,53 @@ def number(value: float, form: str) -> str:
         return MISSING
     text = format(value, form)
     return text if float(text) else format(0.0, form)
+
+
+def bounding(value: float, digits: int, up: bool) -> str:
+    """Text of a bound with some significant digits, never below it if ``up``, else never above.
+
+    Examples
+    --------
+    >>> bounding(0.0994, 2, up=True), bounding(200.66, 3, up=False), bounding(1234.5, 3, up=True)
+    ('0.1', '200', '1240')
+    >>> bounding(250 * (1 + 1e-15), 3, up=True), bounding(float("nan"), 3, up=True)
+    ('250', '–')
+    """
+    if not np.isfinite(value) or not value:
+        return number(value, "g")
+    computed = _COMPUTED.create_decimal(Decimal(float(value)))
+    kept = Context(prec=digits, rounding=ROUND_CEILING if up else ROUND_FLOOR)
+    return f"{kept.plus(computed).normalize():f}"
+
+
+def safe_size(size: float, sought: Sought) -> str:
+    """Size to build or a simulated limit with its unit, rounded to its safe side: lengths down, forces up.
+
+    Examples
+    --------
+    >>> from stiction.answer.sought import FORCE, LENGTH
+    >>> safe_size(200.66e-6, LENGTH), safe_size(12.341e-6, FORCE)
+    ('200 µm', '12.4 µN')
+    """
+    return f"{bounding(size / sought.scale, _DIGITS, sought.more_is_better)} {sought.shown}"
+
+
+def lower_to(decimals: int) -> Callable[[float], str]:
+    """Text of a lower bound with some decimals, never above it.
+
+    Examples
+    --------
+    >>> lower_to(1)(219.39), lower_to(1)(219.4), lower_to(1)(float("nan"))
+    ('219.3', '219.4', '–')
+    """
+    step = Decimal(1).scaleb(-decimals)
+
+    def text(value):
+        if not np.isfinite(value):
+            return number(value, "g")
+        return str(_COMPUTED.create_decimal(Decimal(float(value))).quantize(step, ROUND_FLOOR))
+
+    return text
 
 
 def humidity_text(value: float) -> str:
@@ -149,7 +204,7 @@ def fraction_with_band(share: float, low: float, high: float, unit: str = "") ->
 
     Examples
     --------
-    >>> fraction_with_band(0.0123, 0.0101, 0.0149), fraction_with_band(0.5, 0.48, 0.52, " %")
+    >>> fraction_with_band(0.0123, 0.0101, 0.01485), fraction_with_band(0.5, 0.48, 0.52, " %")
     ('1.23 (1.01 to 1.49)', '50 % (48 to 52 %)')
     >>> fraction_with_band(0.0, 0.0, 0.00037, " %"), fraction_with_band(1.0, 0.99963, 1.0)
     ('at most 0.037 %', 'at least 99.963')
@@ -162,31 +217,34 @@ def fraction_with_band(share: float, low: float, high: float, unit: str = "") ->
 
 
 def fraction_between(low: float, high: float, unit: str = "") -> str:
-    """Fraction of devices between two ends in percent, without ends of none and of all. No other is rounded to these.
+    """Fraction of devices between two ends in percent, without ends of none and of all. Ends are rounded outwards.
 
     Examples
     --------
-    >>> fraction_between(0.0101, 0.0149), fraction_between(0.0, 0.00037, " %"), fraction_between(0.0, 1.0, " %")
-    ('1.01 to 1.49', 'at most 0.037 %', '0 to 100 %')
-    >>> fraction_between(0.0, 0.9999995, " %"), fraction_between(0.9999, 0.99998)
-    ('at most 99.99995 %', '99.99 to 99.998')
+    >>> fraction_between(0.0101, 0.0149), fraction_between(0.0, 0.0003701, " %"), fraction_between(0.0, 1.0, " %")
+    ('1.01 to 1.49', 'at most 0.0371 %', '0 to 100 %')
+    >>> fraction_between(0.0, 0.9999995, " %"), fraction_between(0.99985, 0.99998)
+    ('at most 99.99995 %', '99.985 to 99.998')
     """
-    least, most = _of_the_rest(low), _percent(high)
+    least, most = percent_bound(low, 3, up=False), percent_bound(high, 3, up=True)
     if low <= 0 and high < 1:
         return f"at most {most}{unit}"
     if 0 < low < 1 <= high:
         return f"at least {least}{unit}"
-    return f"{_percent(low)} to {most}{unit}"
+    return f"{least} to {most}{unit}"
 
 
-def _percent(fraction):
-    """Fraction in percent with three digits, near all of them with two of the rest."""
-    return _of_the_rest(fraction) if 0.999 < fraction < 1 else f"{100 * fraction:.3g}"
+def percent_bound(fraction: float, digits: int, up: bool) -> str:
+    """End of a band of a fraction in percent, rounded outwards; near all of them with two digits of the rest.
 
-
-def _of_the_rest(fraction):
-    """Fraction in percent with two digits of what it leaves."""
-    return f"{100 - float(f'{100 * (1 - fraction):.2g}'):.12g}"
+    Examples
+    --------
+    >>> percent_bound(0.1234, 2, up=True), percent_bound(0.999631, 3, up=False), percent_bound(1.0, 3, up=True)
+    ('13', '99.963', '100')
+    """
+    if _NEARLY_ALL < fraction < 1:
+        return f"{100 - Decimal(bounding(100 * (1 - fraction), 2, not up)):f}"
+    return bounding(100 * fraction, digits, up)
 
 
 def with_band(stuck: float, low: float, high: float) -> str:

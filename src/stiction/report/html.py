@@ -17,12 +17,12 @@ from stiction.plan.stage import File
 TEMPLATES = Path(__file__).with_name("templates")
 #: Most characters of a cell that is never broken.
 _LONG = 24
+#: Cell of a column of words, or an empty one in it.
+_WORD = r"[^\W\d].*|\W?"
 #: Comments on lines of their own, and indentation.
 _FOR_READERS = re.compile(r"^ *(?://.*|/\*\*.*\*/)\n|^ +", re.MULTILINE)
-#: Space between two sentences, and most characters of a term that one explains.
-_SENTENCE, _LONGEST_TERM = re.compile(r"(?<=\.) (?=[A-Z])"), 60
-#: Space between the thousands of a number.
-_THOUSANDS = re.compile(r"(?<=\d) (?=\d{3}\b)")
+#: Space between the thousands of a number, and hyphen that is its sign.
+_THOUSANDS, _SIGN = re.compile(r"(?<=\d) (?=\d{3}\b)"), re.compile(r"(?<![\w.)])-(?=\d)")
 
 
 class _Loader(FileSystemLoader):
@@ -42,30 +42,21 @@ _ENVIRONMENT = Environment(
 def _kinds(cells):
     """Class of each column: long texts, which are broken, and words read from the left; numbers have none."""
     columns = [column.astype(str).str for _, column in cells.items()]
-    return ["text" if (one.len() > _LONG).any() else "" if one.contains(r"\d").any() else "word" for one in columns]
+    return ["text" if (one.len() > _LONG).any() else "word" * bool(one.fullmatch(_WORD).all()) for one in columns]
 
 
-def _explained(caption):
-    """Sentences of a caption, each with the term before its colon, or none, and lines of a list without their mark.
+def _typeset(text):
+    """Text, or a number, with signs of minus, in which no line ends between the thousands of a number.
 
     Examples
     --------
-    >>> list(_explained("All rows. Limit: the least: one.")), list(_explained("- (1) Too steep: 0.1."))
-    ([('', 'All rows.'), ('Limit', 'the least: one.')], [('', '(1) Too steep: 0.1.')])
+    >>> _typeset("-5.3 % of 20 000, from 2026-11-30 on").replace("\N{NO-BREAK SPACE}", "_")
+    '−5.3 % of 20_000, from 2026-11-30 on'
     """
-    for line in filter(None, caption.split("\n")):
-        for sentence in [line.removeprefix("- ")] if line.startswith("- ") else _SENTENCE.split(line):
-            term, _, text = sentence.partition(": ")
-            is_term = text and len(term) <= _LONGEST_TERM and not line.startswith("- ")
-            yield (term, text) if is_term else ("", sentence)
+    return _SIGN.sub("\N{MINUS SIGN}", _THOUSANDS.sub("\N{NO-BREAK SPACE}", str(text)))
 
 
-def _unbroken(text):
-    """Text, or a number, in which no line ends between the thousands of a number."""
-    return _THOUSANDS.sub("\N{NO-BREAK SPACE}", str(text))
-
-
-_ENVIRONMENT.filters |= {"kinds": _kinds, "explained": _explained, "unbroken": _unbroken}
+_ENVIRONMENT.filters |= {"kinds": _kinds, "typeset": _typeset}
 _ENVIRONMENT.policies["json.dumps_kwargs"] = {"sort_keys": True, "separators": (",", ":")}
 
 

@@ -38,9 +38,9 @@ class Section:
         return len(self.cells) > _ROWS
 
     @property
-    def pictures(self) -> list[str]:
-        """Panels and legends of the figure in Base64."""
-        return [base64.b64encode(strip).decode() for strip in strips(self.figure)]
+    def pictures(self) -> list[tuple[str, bool]]:
+        """Panels and legends of the figure in Base64, each with whether it is a legend."""
+        return [(base64.b64encode(strip.content).decode(), strip.is_legend) for strip in strips(self.figure)]
 
 
 @dataclass(frozen=True)

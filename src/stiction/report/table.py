@@ -22,18 +22,62 @@ DEVICE = {"device": (str, "device")} | HUMIDITY
 
 
 @dataclass(frozen=True)
+class Term:
+    """Term of a caption, such as the title of a column, and what it means."""
+
+    name: str
+    meaning: str
+
+    def __str__(self):
+        return f"{self.name}: {self.meaning}"
+
+
+@dataclass(frozen=True)
+class Line:
+    """Sentence of a caption that stands on a line of its own."""
+
+    sentence: str
+
+
+#: What a table shows: sentences, terms, and lines below all of these.
+Caption = Sequence[str | Term | Line]
+
+
+@dataclass(frozen=True)
 class Table:
     """One table of the results."""
 
     frame: pd.DataFrame  #: every number with its error, in the units of the names of the columns
-    caption: str  #: what the table shows
+    shows: str | Caption
     cells: pd.DataFrame  #: the same for reading, as text
 
     @classmethod
-    def of(cls, rows: Iterable[Mapping[str, Any]], caption: str, columns: Columns) -> "Table":
+    def of(cls, rows: Iterable[Mapping[str, Any]], shows: str | Caption, columns: Columns) -> "Table":
         """Table of rows of numbers, with their text in some columns."""
         frame = pd.DataFrame(rows)
-        return cls(frame, caption, as_text(frame, columns))
+        return cls(frame, shows, as_text(frame, columns))
+
+    @property
+    def parts(self) -> Caption:
+        """Parts of the caption that are not empty."""
+        return tuple(filter(None, [self.shows] if isinstance(self.shows, str) else self.shows))
+
+    @property
+    def caption(self) -> str:
+        """Caption as text: one paragraph, and below it lines.
+
+        Examples
+        --------
+        >>> parts = "Lengths.", Term("Limit", "the least."), "Warnings:", Line("Too steep."), Line("Too thin.")
+        >>> print(Table(pd.DataFrame(), parts, pd.DataFrame()).caption)
+        Lengths. Limit: the least. Warnings:
+        <BLANKLINE>
+        - Too steep.
+        - Too thin.
+        """
+        lines = [f"- {part.sentence}" for part in self.parts if isinstance(part, Line)]
+        paragraph = " ".join(str(part) for part in self.parts if not isinstance(part, Line))
+        return "\n".join([paragraph, *([""] if lines else []), *lines])
 
     @property
     def csv(self) -> str:
@@ -48,7 +92,7 @@ class Table:
 
     def page(self, title: str) -> str:
         """Page of title, caption and cells, as HTML."""
-        return html.rendered(_TEMPLATE, title=title, caption=self.caption, cells=self.cells)
+        return html.rendered(_TEMPLATE, title=title, parts=self.parts, cells=self.cells)
 
 
 def as_text(frame: pd.DataFrame, columns: Columns) -> pd.DataFrame:
@@ -70,18 +114,9 @@ def _cell(row, show, *keys):
     return show(*values) if callable(show) else number(*values, show)
 
 
-def with_list(caption: str, sentences: Sequence[str]) -> str:
-    """Caption with sentences below each other.
-
-    Examples
-    --------
-    >>> print(with_list("Lengths. Warnings:", ["Too steep.", "Too thin."]))
-    Lengths. Warnings:
-    <BLANKLINE>
-    - Too steep.
-    - Too thin.
-    """
-    return "\n".join([caption, *([""] if sentences else []), *(f"- {sentence}" for sentence in sentences)])
+def warned(sentences: Sequence[str]) -> list[str | Line]:
+    """End of a caption with warnings, nothing without one."""
+    return ["Warnings:", *map(Line, sentences)] if sentences else []
 
 
 def save(table: Table, paths: Mapping[str, str], title: str) -> None:

@@ -31,6 +31,7 @@ from stiction.device import Device
 from stiction.devices.limits import rules
 from stiction.report.answer import tables, words
 from stiction.report.devices import explorer
+from stiction.report.format import safe_size
 from stiction.stages.answer.answer import layout
 from stiction.stages.life.inputs import BeamErrors, BeamKeys, StopperKeys
 
@@ -98,7 +99,7 @@ def shown(answer):
     """Sizes that a face may state as the one to build, as text."""
     if answer.forbidden or not np.isfinite(answer.build):
         return []
-    return [answer.in_words(answer.build).split()[0]]
+    return [safe_size(answer.build, answer.sought).split()[0]]
 
 
 def test_headline_text_page_index_and_front_page_state_the_same_size(case, tmp_path):

@@ -29,12 +29,14 @@ from answers import (
 from drawn_curves import etched, law_of, rough
 
 from stiction.answer.data import Verdict
+from stiction.answer.sought import FORCE, LENGTH
 from stiction.beam.cantilever import Beam
 from stiction.beam.energy import apparent_adhesion_energy
 from stiction.devices.budget import LARGEST
 from stiction.devices.limits import rules as limits
 from stiction.report.answer import words
 from stiction.report.axes.section import with_process
+from stiction.report.format import safe_size
 from stiction.report.limits.words import text
 from stiction.report.page import Page, Section, Summary
 from stiction.report.test_beams import tables as tables_test_beams
@@ -59,8 +61,8 @@ def test_without_a_length_the_answer_is_the_length_to_build_in_the_worst_air():
     # All inputs count as exact: the simulated limit of the worst air, as far as 4000 draws tell it.
     assert answer.build == pytest.approx(least(lengths[0.67]), rel=5e-3)
     assert (shown.tone, shown.sign) == ("good", "Length to build")
-    assert shown.answer == f"No longer than {1e6 * answer.build:.0f} µm."
-    assert shown.points["What decides"].startswith("RH 0.67, stuck by the tip.")
+    assert shown.answer == f"No longer than {safe_size(answer.build, LENGTH)}."
+    assert shown.points["What decides"].startswith("RH 0.67, the worst of the stated airs, stuck by the tip.")
     assert "at relative humidities of 0.44, 0.67 (95 % confidence, if the model holds)." in shown.basis[0]
     assert "All inputs count as exact." in shown.basis[1]
     assert shown.cells["RH"].tolist() == ["0.44", "0.67"]
@@ -103,7 +105,7 @@ def test_the_uncertainty_of_the_inputs_shortens_the_answer_and_names_what_to_mea
     wide = {(0.67, "tip"): with_total(OF_TIP[0.67, "tip"], 0.2)}
     answer = beam_answer(CANTILEVER, {0.67: safe()}, wide)
     shown = screen_of(answer, CANTILEVER)
-    assert f"would be {1e6 * answer.if_measured:.0f} µm" in shown.points["What to measure"]
+    assert f"would be {safe_size(answer.if_measured, LENGTH)}" in shown.points["What to measure"]
     assert shown.points["What to measure"].startswith("Heights of B2: known exactly")
     assert "uncertainty" in screen_of(exact, CANTILEVER).points["What to measure"]
 
@@ -151,8 +153,8 @@ def test_a_stopper_suffices_if_and_only_if_it_has_the_force_to_build(budgets):
         shown = screen_of(answer, STOPPER)
         assert shown.sign == sign
         own = f"with your {1e6 * by * needed:.4g} µN, {words.stuck_in_words(answer.stuck)} stick"
-        assert shown.answer == f"At least {1e6 * needed:.3g} µN; {own}."
-        build = "Nothing." if by > 1 else f"A restoring force of {1e6 * needed:.3g} µN."
+        assert shown.answer == f"At least {safe_size(needed, FORCE)}; {own}."
+        build = "Nothing." if by > 1 else f"A restoring force of {safe_size(needed, FORCE)}."
         assert shown.points["What to change"] == build
 
 
@@ -217,9 +219,9 @@ def test_the_answer_of_a_device_with_test_beams_is_the_one_that_they_give():
     assert answer.build == pytest.approx(by_hand, rel=0.02)
     assert answer.without_test_beams == pytest.approx(without.build, rel=1e-12)
     shown = screen_of(answer, CANTILEVER)
-    assert shown.answer == f"No longer than {1e6 * answer.build:.0f} µm."
+    assert shown.answer == f"No longer than {safe_size(answer.build, LENGTH)}."
     assert f"Without the test beams, it would be {1e6 * without.build:.0f} µm." in shown.basis
-    assert shown.cells["length to build [µm]"].tolist() == [f"{1e6 * answer.build:.0f}"]
+    assert shown.cells["length to build [µm]"].tolist() == [safe_size(answer.build, LENGTH).split()[0]]
 
 
 # Pages with a limit that forbids a number
@@ -301,7 +303,7 @@ def test_the_longest_lengths_are_those_of_beams_whose_tip_cannot_touch():
     (air,) = answer.airs
     assert air.without_tip == pytest.approx(float(dataset.safe_length.sel(share=1e-3, shape=S_SHAPE)), rel=5e-3)
     shown = screen_of(answer, CANTILEVER)
-    assert shown.cells["if the tip cannot touch [µm]"].tolist() == [f"{1e6 * air.without_tip:.0f}"]
+    assert shown.cells["if the tip cannot touch [µm]"].tolist() == [safe_size(air.without_tip, LENGTH).split()[0]]
     assert "if the tip cannot touch [µm]" not in screen_of(beam_answer(BRIDGE, {0.67: safe("bridge")}), BRIDGE).cells
 
 
@@ -326,4 +328,5 @@ def test_nearly_all_is_not_rounded_to_all(fraction):
         shown = float(words.percent(fraction, end).removesuffix(" %"))
         assert shown < 100
         digits = 100 * min(fraction, 1 - fraction) if fraction > 0.99 else 100 * fraction
-        assert shown == pytest.approx(100 * fraction, abs=0.05 * digits)  # half of a step of two digits
+        step = 0.05 if end else 0.05 / 2  # of two digits; an end is rounded outwards
+        assert shown == pytest.approx(100 * fraction, abs=2 * step * digits)

@@ -49,7 +49,7 @@ def test_the_table_has_a_row_per_shape_and_share_with_the_numbers_of_the_dataset
     held = one.safe_length, one.estimate, one.beams_error, one.surfaces_error
     assert stated == pytest.approx([1e6 * float(value) for value in held], rel=1e-12, nan_ok=True)
     assert row.bound_um == pytest.approx(1e6 * float(one.flooded_length), rel=1e-12)
-    assert table.cells["bound [µm]"].iloc[7] == f"{row.bound_um:.1f}"
+    assert 0 <= row.bound_um - float(table.cells["bound [µm]"].iloc[7]) < 0.1
 
 
 def test_arcs_have_no_error_of_surfaces_of_their_own(found):

@@ -279,7 +279,7 @@ def test_where_few_devices_stick_the_page_begins_with_how_many_do_at_most():
     page = beam_page(CANTILEVER, {0.67: few})
     assert page.answer[0] == (
         "At a relative humidity of 0.67, hardly any device sticks: none of the 400 simulated ones shorter than 1400 µm "
-        "does, and at most 2.9 % of those of 1410 µm (95 % confidence, given the drawn surfaces). For 1 in 1000, the "
+        "does, and at most 3 % of those of 1410 µm (95 % confidence, given the drawn surfaces). For 1 in 1000, the "
         "length that sticks on flat surfaces counts; 2995 devices in design.beams show whether longer ones release."
     )
     flat = 1e6 * few.flooded_length.sel(shape=EITHER).item()

@@ -9,6 +9,7 @@ from answers import BRIDGE, CANTILEVER, TIPS, beam_page, budget_dataset, least, 
 
 from stiction.devices.limits import rules as limits
 from stiction.report.devices import sentences, warnings_page
+from stiction.report.format import bounding
 from stiction.report.limits import pages
 from stiction.report.limits.words import text, texts
 from stiction.stages.answer.answer import layout
@@ -31,7 +32,10 @@ def test_a_length_to_build_with_a_slope_beyond_the_linear_theory_is_flagged(sect
             said = [one for one in texts(sentences.shortest_warnings(section, answer)) if "slope" in one]
             slope = steepest(20e-6, built / arms)
             assert bool(said) == (slope > limits.ROTATION)
-            assert all(f"a slope of {slope:.3g}" in one and f"of {built / arms * 1e6:.0f} µm" in one for one in said)
+            assert all(
+                f"a slope of {slope:.3g}" in one and f"of {bounding(built / arms * 1e6, 3, up=False)} µm" in one
+                for one in said
+            )
             flagged += [steepest(20e-6, built / factor / arms) > limits.ROTATION for _ in said]
     assert not all(flagged), "the control: at the simulated limit itself some would have no flag"
 

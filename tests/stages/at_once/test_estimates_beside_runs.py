@@ -18,6 +18,7 @@ from stiction.plan.graph import Graph, Results
 from stiction.plan.plan import Plan
 from stiction.report.at_once import tables
 from stiction.run import storage
+from stiction.run.variables import described
 from stiction.stages.at_once import beside
 from stiction.stages.devices.opening import EITHER
 
@@ -173,6 +174,7 @@ def test_the_estimate_of_a_bridge_is_that_of_the_file_beside_the_length_of_its_m
         numbers = [float(at[name]) for name in ("estimate", "low", "high")]
         np.testing.assert_allclose(numbers, [row.length, *row.intervals["90"]], rtol=1e-7)
     np.testing.assert_array_equal(found.length.isel(humidity=0), run.estimate.isel(shape=0))
+    assert described(found, beside.LENGTHS).residual_stress.units == "Pa"
     rows = list(csv.DictReader(io.StringIO(tables.table({"Lever": dataset({0.6: safe()}), "R": found}).csv)))
     assert {row["device"]: row["residual_stress_MPa"] for row in rows} == {"Lever": "", "R": "50.0"}
 

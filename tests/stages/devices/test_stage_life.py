@@ -332,7 +332,7 @@ def test_a_stopper_at_a_voltage_is_held_by_more_on_flats_than_on_rough_patches()
     assert_allclose(found["at_voltage"].error, gained.std(ddof=1) / len(gained) ** 0.5, rtol=1e-9)
     assert_allclose((found["stuck_at_voltage"].low, found["stuck_at_voltage"].high), 0.6, rtol=1e-12)
     said = report.sentences(layout(stopper_answers(dataset, of, biased), of))
-    assert any(sentence.endswith(f" to {report.significant(1e6 * flat)} µN.") for sentence in said)
+    assert any(sentence.endswith(f" to {report.significant(1e6 * flat, up=True)} µN.") for sentence in said)
 
 
 def test_without_voltage_nothing_is_said_of_it_and_a_vanishing_one_changes_nothing(lengths):
@@ -471,7 +471,7 @@ def test_the_figure_has_a_row_for_every_length_with_its_number_left_of_which_is_
         labels = [" ".join(label.get_text().split()) for label in panel.get_yticklabels()]
         assert labels == [one.what.partition(":")[0] for one in shown]
         for one, text in zip(shown, panel.texts, strict=True):
-            assert text.get_text().split()[-1] == report.significant(one.high * 1e6)
+            assert text.get_text().split()[-1] == report.significant(one.high * 1e6, up=unit == "N")
         boxes = [text.get_window_extent() for text in panel.texts]
         assert panel.bbox.x0 <= min(box.x0 for box in boxes)
         assert panel.bbox.x1 >= max(box.x1 for box in boxes)

@@ -84,8 +84,8 @@ def in_short(files: Sequence[str]) -> Iterator[str]:
     """Lines with the length or force to build of each device of some valid files that the estimate knows."""
     for name, question in _of_files(files).items():
         with suppress(NotLearnt):
-            said = chosen(answer(question, *known()), f" of {name}")
-            yield f"Estimate: {said}; stiction estimate {' '.join(files)} says more."
+            interval = chosen(answer(question, *known()), f" of {name}")
+            yield f"Estimate: {interval}; stiction estimate {' '.join(files)} says more."
 
 
 def main(words: Sequence[str]) -> int:
@@ -113,16 +113,16 @@ def _of_files_alone(arguments):
     """Questions of files without options of a device."""
     if stated := [name for name in (*OPTIONS, *_MORE) if getattr(arguments, name) not in (None, _DEFAULTS.get(name))]:
         raise ValueError(f"--{stated[0]} is for a device without a file: state it in {arguments.files[0]}")
-    if not (found := _of_files(arguments.files)):
+    if not (by_device := _of_files(arguments.files)):
         raise ValueError(f"{' '.join(arguments.files)} has no devices to estimate")
-    return found
+    return by_device
 
 
 def _of_files(files):
     """Questions of all devices of some files."""
     from stiction.config.reading import read  # imports the parser of YAML
 
-    return {name: one for file in files for name, one in questions(read(file), content()).items()}
+    return {name: question for file in files for name, question in questions(read(file), content()).items()}
 
 
 def _of_options(arguments, library):
@@ -224,39 +224,40 @@ _NAME = "The device"
 _WORDS = {"um": ("length", "µm"), "uN": ("force", "µN")}
 
 
-def shown(found: Estimate) -> Iterator[str]:
+def shown(estimate: Estimate) -> Iterator[str]:
     """Lines of an answer."""
-    asked, (name, symbol) = found.question, _WORDS[found.question.unit]
+    asked, (name, symbol) = estimate.question, _WORDS[estimate.question.unit]
     left_open = ", typical surfaces stand for what is not stated" * any(asked.members)
-    yield f"{asked.name}: estimate at RH {found.humidity:g}, the worst air; stated inputs count as exact{left_open}"
+    yield f"{asked.name}: estimate at RH {estimate.humidity:g}, the worst air; stated inputs count as exact{left_open}"
     yield f"  stuck            {f'{name} [{symbol}]':<15}90 %            95 %"
-    for row in found.rows:
+    for row in estimate.rows:
         both = ([_number(end, asked) for end in ends] for ends in row.intervals.values())
         ends = "    ".join(f"{low:>5} to {high:<5}" for low, high in both)
         yield f"  1 in {1 / row.fraction:<10.0f}  {_number(row.size, asked):>8}     {ends}"
-    if found.stuck is not None:
-        value, low, high = (_percent(part, asked.most) for part in found.stuck)
+    if estimate.stuck is not None:
+        value, low, high = (_percent(fraction, asked.most) for fraction in estimate.stuck)
         yield f"  At {_number(asked.size, asked)} {symbol}, {value} stick (95 %: {low} to {high})."
-    yield f"  {chosen(found)}."
+    yield f"  {chosen(estimate)}."
 
 
-def chosen(found: Estimate, of: str = "") -> str:
+def chosen(estimate: Estimate, subject: str = "") -> str:
     """Interval of the size for 1 in 1000, and the end to use."""
-    (low, high), asked = found.chosen.intervals["90"], found.question
+    (low, high), asked = estimate.chosen.intervals["90"], estimate.question
     least, most = _number(low, asked), _number(high, asked)
     safe = f"at least {most}" if isinstance(asked, Stopper) else f"at most {least}"
-    return f"1 in {1 / CHOSEN:.0f}{of} sticks between {least} and {most} {_WORDS[asked.unit][1]} (90 %): use {safe}"
+    symbol = _WORDS[asked.unit][1]
+    return f"1 in {1 / CHOSEN:.0f}{subject} sticks between {least} and {most} {symbol} (90 %): use {safe}"
 
 
 #: Largest fraction that is shown.
 _NEARLY_ALL = 0.99
 
 
-def _percent(part, most):
+def _percent(fraction, most):
     """Fraction in percent, between the smallest one with a length and the largest that is known."""
-    if part < FRACTIONS[-1]:
+    if fraction < FRACTIONS[-1]:
         return f"less than {100 * FRACTIONS[-1]:.4f} %"
-    return f"{'at least ' * (part >= most)}{float(f'{100 * min(part, _NEARLY_ALL):.2g}'):g} %"
+    return f"{'at least ' * (fraction >= most)}{float(f'{100 * min(fraction, _NEARLY_ALL):.2g}'):g} %"
 
 
 def _number(size: float, question: Question | Stopper | Bridge) -> str:

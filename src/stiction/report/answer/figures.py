@@ -13,6 +13,7 @@ from stiction.devices.probes import UNLIKELY
 from stiction.devices.risk import one_in
 from stiction.plan.names import by_name
 from stiction.report.answer import tables, words
+from stiction.report.format import safe_size
 from stiction.report.style import (
     BUILD,
     OUTLINED,
@@ -38,6 +39,8 @@ _ROW, _AROUND, _PANEL = 0.42, 1.3, 3.4
 _STUCK, _LOWEST = "P(stuck) [–]", 1 / 30
 #: Widest label of a step [characters].
 _WIDE = 26
+#: Colour and marker of sizes that are stricter than the size to build.
+_STRICTER = {"color": "black", "marker": "v", "linestyle": "", "markersize": 6}
 #: Place of the label of a fraction.
 _LABEL = {"xycoords": ("axes fraction", "data"), "va": "bottom", "fontsize": 7, "path_effects": OUTLINED}
 
@@ -75,7 +78,7 @@ def _label_of_row(answer, row):
     """Cause of a row of the ladder with its size and change."""
     step = answer.known_steps[row]
     change = f" ({100 * (step.factor - 1):+.1f} %)" if row else ""
-    return f"{textwrap.fill(words.CAUSES[step.cause][0], _WIDE)}\n{answer.in_words(step.size)}{change}"
+    return f"{textwrap.fill(words.CAUSES[step.cause][0], _WIDE)}\n{safe_size(step.size, answer.sought)}{change}"
 
 
 def _stated(panel, answer, scale):
@@ -106,9 +109,15 @@ def risk(answers: Mapping[str, Answer]) -> Figure:
     for panel, answer in zip(columns[:, 0], answers.values(), strict=True):
         if answer.pull_offs:
             panel.set_ylabel(f"{answer.sought.fraction} [–]")
-    letter_lines(lines, [f"{name}, {answer.kind}" for name, answer in answers.items()])
+    letter_lines(lines, [_title(name, answer) for name, answer in answers.items()])
     _explain(figure, columns[:, 0])
     return figure
+
+
+def _title(name, answer):
+    """Name and kind of a device, and below it the sizes that are stricter than the size to build."""
+    stricter = [] if words.is_forbidden(answer) else words.stricter(answer)
+    return "\n".join([f"{name}, {answer.kind}", *(f"stricter: {size}" for size in stricter)])
 
 
 def _stuck(panel: Axes, answer):
@@ -127,19 +136,28 @@ def _stuck(panel: Axes, answer):
     colour, decides = humidity_colour(answer.together.humidity), Air(answer.together.humidity).words
     label_of_airs = f"all airs, {decides} decides" if len(answer.airs) > 1 and np.isfinite(answer.share) else decides
     panel.plot(sizes, expected, color=colour, linewidth=1.6, label=label_of_airs)
+    style = {"color": colour, "alpha": 0.2, "linewidth": 0}
+    panel.fill_between(sizes, *band, where=_resolved(band[1]), label="its 95 % band", **style)
     legend_below(panel, panel.get_legend_handles_labels()[0])
-    style = {"alpha": 0.2, "linewidth": 0}
-    panel.fill_between(sizes, *band, where=_resolved(band[1]), color=colour, **style)
-    panel.plot([], [], color="0.3", linewidth=1.6, label="mean over all that is unknown")
-    panel.fill_between([], [], [], color="0.3", **style, label="95 % band, where the simulation resolves it")
+    panel.plot([], [], color="0.3", linewidth=1.6, label="mean; the worst 5 % count")
     if np.isfinite(answer.share):
         panel.axhline(answer.share, color="0.4", linestyle=":", linewidth=0.8)
-        panel.annotate("allowed", (0.99, answer.share), ha="right", **_LABEL)
+        at, side = (0.01, "left") if answer.sought.more_is_better else (0.99, "right")  # clear of marks
+        panel.annotate("allowed", (at, answer.share), ha=side, **_LABEL)
     _size_to_build(panel, answer, scale)
+    stricter = _stricter(panel, answer, scale)
     lowest = _LOWEST * np.nan_to_num(answer.share, nan=UNLIKELY)
-    left = 0 if answer.sought.more_is_better else sizes.min()
-    panel.set(yscale="log", xlim=(left, sizes.max()), ylim=(lowest, 1.3))
+    left = 0 if answer.sought.more_is_better else min([sizes.min(), *(0.98 * size for size in stricter)])
+    panel.set(yscale="log", xlim=(left, max([sizes.max(), *(1.02 * size for size in stricter)])), ylim=(lowest, 1.3))
     panel.yaxis.set_major_formatter(lambda share, _: "all" if share == 1 else one_in(share))
+
+
+def _stricter(panel, answer, scale):
+    """Marks of the sizes that are stricter than the size to build, at the allowed fraction; these sizes."""
+    sizes = [one.size / scale for one in (answer.between, *answer.unasked) if one]
+    if sizes:
+        panel.plot(sizes, [answer.share] * len(sizes), **_STRICTER, label="stricter sizes, in the titles")
+    return sizes
 
 
 def _resolved(upper):
@@ -168,7 +186,7 @@ def _size_to_build(panel, answer, scale):
         )
         side, end = (3, "left") if answer.sought.more_is_better else (-3, "right")  # clear of the curve
         style = {"xytext": (side, -3), "textcoords": "offset points", "ha": end, "va": "top", "rotation": 90}
-        label = f"build {answer.in_words(answer.build)}"
+        label = f"build {safe_size(answer.build, answer.sought)}"
         panel.annotate(label, (answer.build / scale, 1), xycoords=("data", "axes fraction"), color=BUILD, **style)
     if answer.sizes.min() < answer.size < answer.sizes.max():
         panel.axvline(answer.size / scale, color="0.3", linestyle=":", linewidth=1, label="stated size")

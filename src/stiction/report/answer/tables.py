@@ -7,22 +7,31 @@ import pandas as pd
 import xarray as xr
 
 from stiction.answer.data import Answer, Cause, Probability
+from stiction.answer.sought import LENGTH
 from stiction.contact.air import Air
 from stiction.plan.names import by_name
 from stiction.report.answer import places, words
 from stiction.report.answer.judged import judged
-from stiction.report.format import MISSING, number
-from stiction.report.table import Table, table_stage
+from stiction.report.format import MISSING, bounding, number, safe_size
+from stiction.report.table import Table, Term, table_stage
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.end_states import END_STATES
 
-_CAPTION = (
-    "One row for each device. To build: the largest length, or the smallest restoring force, with at most this "
-    "fraction stuck in all stated airs, after all stated touchdowns, at the stated voltage and tilts, with 95 % "
-    "confidence if the model holds; the simulation and all stated or assumed uncertainties are inside. But: stricter "
-    "sizes, between the stated airs, or by simulation alone where nothing that is stated asks for them. P(stuck): "
-    "expected fraction at the stated size, with a band of 95 % that contains the same. Measure: what would "
-    "change the size most, and the size if it were known exactly. No number: what forbids one."
+_SHOWS = (
+    "One row for each device.",
+    Term(
+        "To build",
+        "the largest length, or the smallest restoring force, with at most this fraction stuck in all stated airs, "
+        "after all stated touchdowns, at the stated voltage and tilts, with 95 % confidence if the model holds; the "
+        "simulation and all stated or assumed uncertainties are inside.",
+    ),
+    Term(
+        "But",
+        "stricter sizes, between the stated airs, or by simulation alone where nothing that is stated asks for them.",
+    ),
+    Term("P(stuck)", "expected fraction at the stated size, with a band of 95 % that contains the same."),
+    Term("Measure", "what would change the size most, and the size if it were known exactly."),
+    Term("No number", "what forbids one."),
 )
 
 
@@ -32,28 +41,32 @@ def devices(answers: Mapping[str, Answer]) -> Table:
         "device": (str, "device"),
         "verdict": (str, "sign"),
         "stated": (_size, "size", "unit"),
-        "to build": (_size, "to_build", "unit"),
+        "to build": (_bound, "to_build", "unit"),
         "but": (str, "stricter"),
         "P(stuck) at the stated size": (str, "stuck"),
         "at most 1 in": (lambda share: number(1 / share, "g"), "share"),
         "largest step": (str, "largest_step"),
         "measure first": (str, "measure"),
-        "then to build": (_size, "if_measured", "unit"),
+        "then to build": (_bound, "if_measured", "unit"),
         "no number because of": (str, "forbidden"),
     }
-    rows, caption = [_row(answer) for answer in answers.values()], _CAPTION
+    rows, shows = [_row(answer) for answer in answers.values()], _SHOWS
     if any(answer.pull_offs for answer in answers.values()):
         rows = [row | _of_places(answer) for row, answer in zip(rows, answers.values(), strict=True)]
-        columns, caption = columns | _COLUMNS_OF_PLACES, f"{caption} {_PLACES}"
-    return Table.of([_without_noise(row) for row in rows], caption, columns)
+        columns, shows = columns | _COLUMNS_OF_PLACES, (*shows, *_PLACES)
+    return Table.of([_without_noise(row) for row in rows], shows, columns)
 
 
 #: What columns about probes show.
 _PLACES = (
     "Without a spring, a probe is asked for its pull-off force: what half of the places hold at most, in the air where "
     "they hold most, and the probability that a measurement gives no more than the measured force, or no less, with "
-    "bands of 95 % that contain the errors of simulation and inputs. Two-sided: twice the smaller of both, with a band "
-    "of the simulation alone. Below 5 % with its band, the measured force does not fit."
+    "bands of 95 % that contain the errors of simulation and inputs.",
+    Term(
+        "Two-sided",
+        "twice the smaller of both, with a band of the simulation alone. Below 5 % with its band, the measured force "
+        "does not fit.",
+    ),
 )
 #: Numbers of probes: ends of bands, quantiles of the forces, and ranks of a measured one.
 _ENDS, _QUANTILES, _RANKS = (
@@ -141,12 +154,17 @@ def _size(value, unit):
     return number(value, ".4g") + (f" {unit}" if np.isfinite(value) else "")
 
 
+def _bound(value, unit):
+    """Size to build with its unit, rounded to its safe side: lengths down, forces up."""
+    return bounding(value, 3, unit != LENGTH.shown) + (f" {unit}" if np.isfinite(value) else "")
+
+
 def steps(answer: Answer) -> pd.DataFrame:
     """Steps from the estimate to the size to build, for reading."""
     return pd.DataFrame(
         {
             "step": words.CAUSES[step.cause][0] + " (not stated)" * (not step.stated),
-            f"{answer.sought.name} after it": answer.in_words(step.size),
+            f"{answer.sought.name} after it": safe_size(step.size, answer.sought),
             "change [%]": number(100 * (step.factor - 1), "+.1f") if k else "",
             "air": Air(step.humidity).words,
         }

@@ -9,7 +9,7 @@ from stiction.answer.sought import FORCE, LENGTH, PULL_OFF
 from stiction.contact.air import Air
 from stiction.contact.meniscus import ZERO_CELSIUS
 from stiction.devices.risk import one_in
-from stiction.report.format import airs, humidity_text, listed, number
+from stiction.report.format import airs, humidity_text, listed, number, percent_bound, safe_size
 from stiction.rounding import in_percent
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.life.answers import Name
@@ -67,22 +67,30 @@ _REASONS = {
 
 #: Fraction that is too small for a number.
 LEAST = 1e-5
+#: Fraction that is too near to all for a number.
+MOST = 0.999
 #: Fraction beyond which two digits would round to all.
 _NEARLY_ALL = 0.99
 
 
 def percent(fraction: float, end: str = "") -> str:
-    """Fraction in percent with two digits, near all of them of the rest, as an ``end`` of a band or alone.
+    """Fraction in percent with two digits, near all of them of the rest.
+
+    An ``end`` of a band, ``low`` or ``high``, is rounded outwards.
 
     Examples
     --------
-    >>> percent(0.1812), percent(0.000242), percent(3e-9), percent(3e-9, "low"), percent(0.99992), percent(0.9962)
-    ('18 %', '0.024 %', 'less than 0.001 %', '0 %', 'more than 99.9 %', '99.62 %')
+    >>> percent(0.1812), percent(0.000242), percent(3e-9), percent(0.99992), percent(0.9962)
+    ('18 %', '0.024 %', 'less than 0.001 %', 'more than 99.9 %', '99.62 %')
+    >>> percent(0.000991, "high"), percent(0.0019, "low"), percent(3e-9, "low"), percent(3e-9, "high")
+    ('0.1 %', '0.19 %', '0 %', '0.001 %')
     """
     if fraction < LEAST:
-        return "0 %" if end else "less than 0.001 %"
-    if fraction > 1 - 1e-3:
-        return "100 %" if end else "more than 99.9 %"
+        return {"low": "0 %", "high": f"{100 * LEAST:g} %"}.get(end, f"less than {100 * LEAST:g} %")
+    if fraction > MOST:
+        return {"low": "99.9 %", "high": "100 %"}.get(end, "more than 99.9 %")
+    if end:
+        return f"{percent_bound(fraction, 2, end == 'high')} %"
     if fraction > _NEARLY_ALL:
         return f"{100 - float(f'{100 * (1 - fraction):.2g}'):.4g} %"
     return f"{float(f'{100 * fraction:.2g}'):g} %"
@@ -105,8 +113,8 @@ def stuck_in_words(stuck: Probability) -> str:
             if stuck.value > stuck.high and mean != most
             else ""
         )
-        return "0 to 100 %" if stuck.high > 1 - 1e-3 else f"at most {most}{more}"
-    if stuck.low > 1 - 1e-3:
+        return "0 to 100 %" if stuck.high > MOST else f"at most {most}{more}"
+    if stuck.low > MOST:
         return percent(stuck.low)
     low, high = percent(stuck.low, "low").removesuffix(" %"), percent(stuck.high, "high")
     return f"{percent(stuck.value)} ({low} to {high})"
@@ -122,7 +130,7 @@ def sign_of(answer: Answer) -> tuple[str, str]:
     if answer.verdict is Verdict.NONE:
         return ("bad", NO_NUMBER) if is_forbidden(answer) else ("open", "Not known")
     if answer.verdict is Verdict.SAFE and not answer.is_enough_between:
-        return "open", f"{_SIGNS[answer.sought.name][Verdict.SAFE][1]} in these airs, not between them"
+        return "open", f"{_SIGNS[answer.sought.name][Verdict.SAFE][1]} in these airs, perhaps not between them"
     return _SIGNS[answer.sought.name][answer.verdict]
 
 
@@ -142,15 +150,21 @@ def headline(answer: Answer) -> str:
 
 def to_build(answer: Answer) -> str:
     """Size to build, and the stricter ones beside it."""
-    size, beside = answer.in_words(answer.build), stricter(answer)
+    size, beside = safe_size(answer.build, answer.sought), stricter(answer)
     return f"{size}, but {listed(beside)}" if beside else size
 
 
 def stricter(answer: Answer) -> list[str]:
-    """Stricter sizes of airs between the stated ones, and of what nothing that is stated asks for."""
+    """Stricter sizes of airs between the stated ones, which are interpolated, and of what nothing stated asks for."""
     at = answer.between
-    sizes = [f"{answer.in_words(at.size)} between these airs (RH {at.humidity:.2g})"] if at else []
-    return sizes + [f"{answer.in_words(one.size)} {_unless(one)}" for one in answer.unasked]
+    beside = [(at.size, f"between these airs (interpolated: state RH {at.humidity:.2g})")] if at else []
+    beside += [(one.size, _unless(one)) for one in answer.unasked]
+    return [f"{safe_size(size, answer.sought)} {unless}" for size, unless in beside if _is_stricter(answer, size)]
+
+
+def _is_stricter(answer, size):
+    """Whether a size is stricter than the one to build as both are stated."""
+    return safe_size(size, answer.sought) != safe_size(answer.build, answer.sought)
 
 
 def _unless(one):
@@ -191,7 +205,11 @@ def decides(answer: Answer) -> str:
     last, largest = answer.stated_steps[-1], answer.largest_step
     held = END_STATES[last.shape].by if last.shape in END_STATES else "liquid that dries"
     held = "tip" if answer.is_by_tip else held
-    sentence = f"{_air(answer, last.humidity)}, stuck by {'the ' if held != 'beam or tip' else ''}{held}."
+    stuck = "" if answer.sought is FORCE else f", stuck by {'the ' if held != 'beam or tip' else ''}{held}"
+    worst = ", the worst of the stated airs" * (len(answer.airs) > 1)
+    sentence = f"{_air(answer, last.humidity)}{worst}{stuck}."
+    if answer.between and _is_stricter(answer, answer.between.size):
+        sentence += f" Between them, RH {answer.between.humidity:.2g} is worse."
     change = largest.factor - 1
     if not np.isfinite(change) or abs(change) < _SAME:
         return sentence
@@ -210,12 +228,12 @@ def measure(answer: Answer) -> str:
         return f"{group}."
     if abs(np.log(answer.if_measured / answer.build)) < _SAME:
         return f"Nothing: with {answer.measure} known exactly, it would change by less than {in_percent(_SAME)}."
-    return f"{group}: known exactly, it would be {answer.in_words(answer.if_measured)}."
+    return f"{group}: known exactly, it would be {safe_size(answer.if_measured, answer.sought)}."
 
 
 def reasons(answer: Answer) -> list[str]:
     """Why no number is stated, as far as the inputs are the reason."""
-    exact = answer.in_words(answer.exact)
+    exact = safe_size(answer.exact, answer.sought)
     return [_REASONS[kind].format(exact=exact, measure=answer.measure) for kind in answer.forbidden if kind in _REASONS]
 
 
@@ -223,7 +241,7 @@ def by_test_beams(answer: Answer) -> list[str]:
     """Size without the test beams, beside the one with them."""
     if np.isnan(answer.without_test_beams):
         return []
-    return [f"Without the test beams, it would be {answer.in_words(answer.without_test_beams)}."]
+    return [f"Without the test beams, it would be {safe_size(answer.without_test_beams, answer.sought)}."]
 
 
 def of_airs(answer: Answer) -> list[dict[str, str]]:
@@ -257,4 +275,4 @@ def _celsius(answer, air):
 
 def _size(answer, size):
     """Size without its unit, – if none is known."""
-    return answer.in_words(size).split()[0] if np.isfinite(size) else "–"
+    return safe_size(size, answer.sought).split()[0] if np.isfinite(size) else "–"

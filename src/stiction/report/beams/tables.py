@@ -19,7 +19,7 @@ from stiction.report.format import TO_MJ, UM, as_published, error_alone, number,
 from stiction.report.limits.words import texts
 from stiction.report.model_error import column as beside
 from stiction.report.published import value
-from stiction.report.table import PAIR, Table, table_stage, with_list
+from stiction.report.table import PAIR, Table, Term, table_stage, warned
 from stiction.stages.beams import pair_warnings
 from stiction.stages.beams.releases import STATES, ends_as, stuck_energies, stuck_lengths
 from stiction.stages.laws import forces as stage_forces
@@ -54,26 +54,39 @@ def table_3(
         rows = [row | _by_model(row, errors) for row in rows]
     rows = prediction.with_intervals(rows)
     predicted = pd.DataFrame(rows) if prediction.ENDS[prediction.COVERAGES[0]][0] in rows[0] else None
-    caption = (
-        "Table III: crack length of the S-shaped beams, mean ± standard deviation over the beams; se: standard error of"
-        " the mean, over beams and samples; deviations from the published and from the measured length. Published "
-        "bias: absolute deviation of the paper's model NG from the measured length, as the paper states it. Γ: mean "
-        "apparent adhesion energy of the S-shaped beams, Eq. (13); ē: mean energy of the samples; "
-        "cv(ē): their standard deviation over their mean. S/arc/free: shares of the end states of the beams; an arc is "
-        "held by its tip alone. The share of arcs depends on the length of the strips and is no prediction. Where the "
-        "share of S-shapes is small, se is the error of these few beams, not of the mean over all beams."
-    )
-    if by_scans:
-        caption += " Scans: standard error of the mean due to the finite scans of measured surfaces."
-    if errors:
-        caption += f" {beside.caption(errors)}"
-    if predicted is not None:
-        caption += f" {prediction.caption(predicted)}"
-    if warnings:
-        caption = with_list(f"{caption} Warnings:", warnings)
+    shows = [
+        *_TABLE_3_SHOWS,
+        *([_SCANS] if by_scans else []),
+        *([beside.caption(errors)] if errors else []),
+        *([] if predicted is None else [prediction.caption(predicted)]),
+        *warned(warnings),
+    ]
     columns = {title: column for title, column in _TABLE_3.items() if by_scans or "scans" not in title}
     columns |= (beside.COLUMN if errors else {}) | (prediction.COLUMNS if predicted is not None else {})
-    return Table.of(rows, caption, columns)
+    return Table.of(rows, shows, columns)
+
+
+#: What columns of Table III show.
+_TABLE_3_SHOWS = (
+    "Table III: crack length of the S-shaped beams, mean ± standard deviation over the beams; se: standard error of "
+    "the mean, over beams and samples; deviations from the published and from the measured length.",
+    Term(
+        "Published bias",
+        "absolute deviation of the paper's model NG from the measured length, as the paper states it.",
+    ),
+    Term(
+        "Γ",
+        "mean apparent adhesion energy of the S-shaped beams, Eq. (13); ē: mean energy of the samples; cv(ē): their "
+        "standard deviation over their mean.",
+    ),
+    Term(
+        "S/arc/free",
+        "shares of the end states of the beams; an arc is held by its tip alone. The share of arcs depends on the "
+        "length of the strips and is no prediction. Where the share of S-shapes is small, se is the error of these "
+        "few beams, not of the mean over all beams.",
+    ),
+)
+_SCANS = Term("Scans", "standard error of the mean due to the finite scans of measured surfaces.")
 
 
 def _row_3(key, beams, forces, published):

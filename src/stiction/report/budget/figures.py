@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from stiction.answer.data import Answer
@@ -54,6 +55,8 @@ _ALL, _SMALL = 100, 2
 _SHARES, _OTHERS = "share of the variance [%]", "others"
 #: Width of a budget [in], and most characters of a line of its titles: 7 points of 390 pixels are 11 pixels.
 _WIDTH, _TITLE = 3.3, 38
+#: Bar of a standard error.
+_ERROR = {"color": "black", "linewidth": 0.6}
 #: Height of each further line of a title [in].
 _LINE = 0.15
 
@@ -73,17 +76,18 @@ def stoppers(
     """
     figure, columns, lines = columns_of_panels(len(datasets), 2, at_most_double(SINGLE), 5.6)
     for column, (name, dataset) in zip(columns, datasets.items(), strict=True):
-        build = _to_build((answers or {}).get(name))
+        answer = (answers or {}).get(name)
+        build = _to_build(answer)
         _stuck_over_force(column[0], dataset, build)
         column[0].set_xlabel(on_own_axes("restoring force [µN]", columns.T))
-        _force_over_humidity(column[1], dataset, build)
+        _force_over_humidity(column[1], dataset, build, answer.between if np.isfinite(build) else None)
     for line in lines:
         line[0, 0].set_ylabel("P(stuck) [–]")
         line[1, 0].set_ylabel(on_own_axes("pull-off force [µN]", line))
     letter_lines(lines, list(datasets))
     if sentences := [f"{name}: {sentence}" for name, limits in warnings.items() for sentence in words.texts(limits)]:
         figure.set_label("\n".join(["Warnings:", *sentences]))
-        figure.supxlabel("Some results are beyond limits of the model.", fontsize=6, ha="left", x=0.01)
+        figure.supxlabel("Some results are beyond limits of the model.", fontsize=7, ha="left", x=0.01)
     return figure
 
 
@@ -105,6 +109,7 @@ def _stuck_over_force(panel, dataset, build):
         _, *band = stuck_over(dataset, humidity, at)
         panel.fill_between(TO_UN * at, *band, color=colour, alpha=0.2, linewidth=0)
         panel.plot(TO_UN * of_air, of_air.share, "|", color=colour, markersize=9, markeredgewidth=1.5)
+    panel.fill_between([], [], [], color="0.3", alpha=0.2, linewidth=0, label="95 % band")
     if limits.notnull().any():
         panel.plot([], [], "|", color="0.3", markersize=9, markeredgewidth=1.5, label="simulated limit, 95 %")
     if np.isfinite(build):
@@ -138,8 +143,11 @@ def _name_restoring_force(panel, restoring):
     )
 
 
-def _force_over_humidity(panel, dataset, build):
-    """Mean and 5 to 95 % of the pull-off force along the fine axis, its limit, and the worst humid air."""
+def _force_over_humidity(panel, dataset, build, between):
+    """Mean and 5 to 95 % of the pull-off force along the fine axis, its limit, the worst humid air, and what to build.
+
+    The largest force to build ``between`` the stated airs may be none.
+    """
     low, high = (TO_UN * dataset.quantile_along.sel(probability=p) for p in dataset.probability.values[[0, -1]])
     light = {"color": _COLOUR, "alpha": 0.2, "linewidth": 0}
     worst, humid = Air(float(dataset.worst_humidity)), is_humid(dataset.axis.values)
@@ -162,6 +170,10 @@ def _force_over_humidity(panel, dataset, build):
     if np.isfinite(build):
         label, at = f"to build in the stated airs, {build:.3g} µN", [placed.get(h, h) for h in dataset.humidity.values]
         entries += panel.plot(at, np.full(len(at), build), "D", color=BUILD, markersize=4, label=label)
+    if between:
+        label = f"between them, RH {between.humidity:.2g}: {TO_UN * between.size:.3g} µN"
+        style = {"color": BUILD, "markersize": 5, "markerfacecolor": "white", "label": label}
+        entries += panel.plot(between.humidity, TO_UN * between.size, "D", **style)
     if not single.all():
         label = f"worst {worst.choose(f'humidity {worst.humidity:.2f}', worst.where)}, by the mean"
         entries += panel.plot([placed[worst.humidity]], [float(means.max())], "v", color="black", label=label)
@@ -213,6 +225,7 @@ def budget(budgets: Mapping[tuple, xr.Dataset]) -> Figure:
         panel.set_xlabel(label)
     letter(axes, [title for title, *_ in contents])
     marks = [Patch(color=colour, label=Air(humidity).words) for humidity, colour in colours.items()]
+    marks.append(Line2D([], [], **_ERROR, marker="|", markersize=3, label="± standard error"))
     legend_outside(figure, (marks, [mark.get_label() for mark in marks]), "lower", 8)
     return figure
 
@@ -304,7 +317,7 @@ def _rows_of_bars(panel, rows: Mapping[str, Sequence[tuple]], colours: Sequence[
             at = row + (k - (len(bars) - 1) / 2) * height
             panel.barh(at, high - low, height, left=low, color=shade, linewidth=0)
             if error > 0:
-                panel.errorbar(end, at, xerr=np.c_[reach], color="black", linewidth=0.6, capsize=1)
+                panel.errorbar(end, at, xerr=np.c_[reach], **_ERROR, capsize=1)
     widest = max(ends, default=0.0) or 1.0
     panel.axvline(0, color="black", linewidth=0.6)
     panel.set_yticks(range(len(rows)), list(rows))

@@ -12,11 +12,11 @@ from stiction.devices.limits.limit import Limit
 from stiction.devices.risk import Basis
 from stiction.estimates import mean_with_error
 from stiction.plan.names import by_name
-from stiction.report.format import UN, fraction_with_band, humidity_text, number, signed, with_error
+from stiction.report.format import UN, bounding, fraction_with_band, humidity_text, number, signed, with_error
 from stiction.report.limits import words
 from stiction.report.model_error import column
 from stiction.report.model_error import sentences as model_errors
-from stiction.report.table import DEVICE, Table, as_text, table_stage, with_list
+from stiction.report.table import DEVICE, Line, Table, Term, as_text, table_stage, warned
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.budget import budget_of, budgets_of, groups_of, response_of, slope_errors_of
 from stiction.stages.devices.end_states import END_STATES
@@ -68,33 +68,25 @@ def stoppers(
     rows = [row for device, dataset in datasets.items() for row in _stopper_rows(device, dataset)]
     rows = [row | model_errors.device_change(errors, row["device"], row["relative_humidity"], FORCE) for row in rows]
     rows = [row | {"warnings": " ".join(words.texts(warnings[row["device"]]))} for row in rows]
-    caption = (
+    shows: list[str | Term | Line] = [
         "Stoppers: pull-off force of a patch, on average an upper bound if it tilts or bends, mean ± standard error "
         "and standard deviation over the patches; P(stuck): fraction of the patches with a pull-off force above the "
         "restoring force, with its 95 % band; simulated limit: restoring force exceeded by the pull-off force of at "
         "most this fraction of all patches, with 95 % confidence; fitted: by a line through the largest 5 % of the "
         "forces, if too few patches bound the fraction; extrapolated: by this line beyond its verified range; –: too "
         "few patches. One touchdown, no voltage, and all inputs exact: table devices has forces to build."
-    )
+    ]
     humid = [dataset for dataset in datasets.values() if ends(dataset)]
     if humid:
-        caption += (
-            " The last row of a stopper has the largest values along a fine axis of humidities. Worst RH: humidity "
-            "of the largest mean pull-off force along this axis."
-        )
+        shows += ["The last row of a stopper has the largest values along a fine axis of humidities.", _WORST_RH]
     if any(has_dry(dataset.axis.values) for dataset in humid):
-        caption += " For a stopper in dry air as well, this is one of them."
+        shows.append("For a stopper in dry air as well, this is one of them.")
     if 0 < len(humid) < len(datasets):
-        caption += " One in a single air has no such row."
+        shows.append("One in a single air has no such row.")
     listed = [f"{device}: {sentence}" for device, of_device in warnings.items() for sentence in words.texts(of_device)]
-    sentences = [
-        caption,
-        *([column.caption(errors)] if errors else []),
-        not_modelled,
-        *(["Warnings:"] if listed else []),
-    ]
+    shows += [*([column.caption(errors)] if errors else []), not_modelled, *warned(listed)]
     columns = _columns_of_stoppers(rows) | (_WORST if humid else {}) | (column.COLUMN if errors else {})
-    return Table.of(rows, with_list(" ".join(sentences), listed), columns)
+    return Table.of(rows, shows, columns)
 
 
 def _stopper_rows(device, dataset):
@@ -143,8 +135,8 @@ def _columns_of_stoppers(rows):
 
 
 def _with_basis(force, basis):
-    """Safe force, and its basis unless it is sampled patches."""
-    return number(force, ".3g") + (f" ({basis})" if basis in (Basis.FITTED, Basis.EXTRAPOLATED) else "")
+    """Safe force, rounded up, and its basis unless it is sampled patches."""
+    return bounding(force, 3, up=True) + (f" ({basis})" if basis in (Basis.FITTED, Basis.EXTRAPOLATED) else "")
 
 
 def _humidities(humidity, lowest, highest):
@@ -167,6 +159,7 @@ def worst_humidity(humidity: float, error: float, is_an_end: bool) -> str:
     return f"{humidity:g} or beyond" if is_an_end else with_error(humidity, error)
 
 
+_WORST_RH = Term("Worst RH", "humidity of the largest mean pull-off force along this axis.")
 _WORST = {"worst RH": (worst_humidity, "worst_humidity", "worst_humidity_se", "worst_is_an_end")}
 
 
@@ -196,16 +189,19 @@ def budget(budgets: Mapping[tuple, xr.Dataset], errors: Mapping[str, xr.Dataset]
         f"{name}: {counted_as_exact(*(dataset for (device, *_), dataset in budgets.items() if device == name))}"
         for name in devices
     ]
-    caption = with_list(
+    shows = [
         "Relative standard uncertainty of a result due to each measurement, if all others were exact, ± standard error "
         "of the simulation. The result is the mean length of beams stuck as S-shapes, the length at which few stick "
-        "at their tip, the mean length of bridges stuck at their middle, or the mean pull-off force of stoppers. "
-        "Remaining: the uncertainty left if the measurement were exact. Scatter between devices and other choices of "
-        "the model, with the sign of their effect, are no part of the total."
-        + (f" {column.caption(errors)}" if errors else ""),
-        [*sentences, *omitted],
-    )
-    return Table(frame, caption, as_text(frame[~frame.part.isin(["input", "member"])], _BUDGET))
+        "at their tip, the mean length of bridges stuck at their middle, or the mean pull-off force of stoppers.",
+        Term(
+            "Remaining",
+            "the uncertainty left if the measurement were exact. Scatter between devices and other choices of the "
+            "model, with the sign of their effect, are no part of the total.",
+        ),
+        *([column.caption(errors)] if errors else []),
+        *map(Line, [*sentences, *omitted]),
+    ]
+    return Table(frame, shows, as_text(frame[~frame.part.isin(["input", "member"])], _BUDGET))
 
 
 def what_to_measure(dataset: xr.Dataset) -> str:
@@ -274,18 +270,18 @@ def _effect(budget, inputs, slope_errors):
     return {"effect_percent": 100 * budget.effect(inputs), "effect_se_percent": 100 * error}
 
 
-def _effect_as_text(part, effect, error):
+def _effect_as_text(share, effect, error):
     """Effect with its standard error, if it has one. Effects of a choice, or of the model, have a sign."""
-    if part in MODEL:
-        return column.marked_change(effect, error, part == MODEL[1])
+    if share in MODEL:
+        return column.marked_change(effect, error, share == MODEL[1])
     if not error > 0 or np.isnan(effect):
         return number(effect, ".2g")
-    return (signed if part == "choice" else with_error)(effect, error)
+    return (signed if share == "choice" else with_error)(effect, error)
 
 
 _BUDGET = DEVICE | {
     "held by": (str, "held_by"),
-    "what": (lambda part, name: f"choice: {choice_label(name)}" if part == "choice" else name, "part", "name"),
+    "what": (lambda share, name: f"choice: {choice_label(name)}" if share == "choice" else name, "part", "name"),
     "effect [%]": (_effect_as_text, "part", "effect_percent", "effect_se_percent"),
     "remaining [%]": (".2g", "remaining_percent"),
 }

@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from stiction.analysis.model_error import length_factors, rms_deviation
@@ -25,7 +26,7 @@ from stiction.report.style import (
     letter_lines,
     styled,
 )
-from stiction.report.table import PAIR, Table, table_stage
+from stiction.report.table import PAIR, Table, Term, table_stage
 from stiction.stages.beams.releases import stuck_lengths
 from stiction.stages.contact import full_contact
 from stiction.stages.contact.asperities import cost, energies_of_readings
@@ -35,9 +36,13 @@ _CAPTION = (
     "energies of the same strips to the power -1/4: change against spheres on summits, on the grid of the contact and "
     "with attraction of the solids, at the lowest and at the highest humidity; root mean square over the humidities of "
     "the deviation from the published length, and from the length under full elastic contact, if computed; "
-    "processor time of a strip over that of spheres on summits; ± standard error over strips. Island: a sphere of the "
-    "area of every island; fitted: a sphere by least squares; shape: every island with its true shape, solved alone. "
-    "Van der Waals: the medium through which the solids attract, or none."
+    "processor time of a strip over that of spheres on summits; ± standard error over strips.",
+    Term(
+        "Island",
+        "a sphere of the area of every island; fitted: a sphere by least squares; shape: every island with its true "
+        "shape, solved alone.",
+    ),
+    Term("Van der Waals", "the medium through which the solids attract, or none."),
 )
 
 
@@ -169,7 +174,7 @@ def _energies_of_models(study, of_full):
 #: Error that is due to rounding [%].
 _ROUNDING = 1e-10
 #: Height of the legend below the panels, width of the labels of rows, and of a panel [in].
-_LEGEND, _LABELS, _PANEL = 1.0, 0.75, 0.85
+_LEGEND, _LABELS, _PANEL = 1.0, 0.75, 1.4
 #: Colours by the attraction of the solids, the first one filled.
 _COLOURS = ("#0072B2", "#C98500")
 
@@ -189,8 +194,7 @@ def figure(*data) -> Figure:
 def changes_drawn(frame: pd.DataFrame, full: Mapping[str, tuple[float, float]], published: pd.DataFrame) -> Figure:
     """Change of the crack length by each reading at the lowest humidity, a panel for each pair.
 
-    Below them full elastic contact, lines for published and measured lengths. The panels are as narrow as a column of a
-    journal, so that their text can be read on a phone.
+    Below them full elastic contact, lines for published and measured lengths.
 
     Parameters
     ----------
@@ -217,18 +221,20 @@ def changes_drawn(frame: pd.DataFrame, full: Mapping[str, tuple[float, float]], 
         attraction = choice_label(f"van_der_waals_{base.vdw}").removeprefix("van der Waals ")
         dots.draw(panel, _readings(of_pair) | {"full contact": [of_full_contact]}, column=attraction)
         panel.xaxis.set_major_locator(MaxNLocator(3))
-        panel.set_xlabel("change of\n$l_s$ [%]")
-        titles.append(f"pair {pair}\n{Air(base.relative_humidity).words}")
+        panel.set_xlabel("change of $l_s$ [%]")
+        titles.append(f"pair {pair}, {Air(base.relative_humidity).words}")
     low, high = np.transpose([panel.get_xlim() for panel in columns.flat])
     for panel in columns.flat:
         panel.set_xlim(low.min(), high.max())
     letter_lines(lines, titles)
-    legend_outside(figure, handles(*columns.flat), "lower", 2)
+    entries, labels = handles(*columns.flat)
+    entries.append(Line2D([], [], linestyle="", label="bars: ± standard error"))
+    legend_outside(figure, (entries, [*labels, entries[-1].get_label()]), "lower", 2)
     return figure
 
 
 def _width(columns):
-    """Width of a figure of some pairs [in]: for three, 7 points of 390 pixels are 11 pixels."""
+    """Width of a figure of some pairs [in]."""
     return _LABELS + _PANEL * columns
 
 

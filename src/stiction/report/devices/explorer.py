@@ -17,7 +17,7 @@ from stiction.report.devices import levels
 from stiction.report.devices.curves import Curves
 from stiction.report.devices.grid import Grid, GridAxis
 from stiction.report.devices.levels import Simulated
-from stiction.report.format import UM, UN
+from stiction.report.format import UM, UN, bounding, safe_size
 from stiction.stages.devices.stoppers import bounded_share
 
 #: Title of a view of a device in its own airs.
@@ -41,7 +41,7 @@ def beside(view: View, answer: Answer) -> View:
     """View of simulated limits that names the size to build beside them."""
     if answer.forbidden or not np.isfinite(answer.build):
         return view
-    build = f"{answer.sought.name} to build, with everything inside: {answer.in_words(answer.build)}"
+    build = f"{answer.sought.name} to build, with everything inside: {safe_size(answer.build, answer.sought)}"
     return replace(view, words={**view.words, "safe": f"{view.words['safe']} ({build})"})
 
 
@@ -115,8 +115,7 @@ def _rounded_down(build, otherwise):
     """Length to build with four digits, not above it, or another one if none is known."""
     if not np.isfinite(build):
         return otherwise
-    digit = 10.0 ** (np.floor(np.log10(build)) - 3)
-    return digit * np.floor(build / digit)
+    return float(bounding(build, 4, up=False))
 
 
 def _simulated(dataset, answer):

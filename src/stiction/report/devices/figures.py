@@ -19,7 +19,7 @@ from stiction.devices.risk import one_in
 from stiction.plan.names import by_name
 from stiction.report.answer.tables import of_datasets
 from stiction.report.answer.words import is_forbidden
-from stiction.report.format import TO_UM, UM, fraction_with_band
+from stiction.report.format import TO_UM, UM, fraction_with_band, safe_size
 from stiction.report.limits.words import numbered, with_numbers
 from stiction.report.style import (
     BUILD,
@@ -30,6 +30,7 @@ from stiction.report.style import (
     handles,
     humidity_axis,
     humidity_colours,
+    is_page,
     legend_below,
     legend_outside,
     letter_lines,
@@ -55,12 +56,13 @@ _ROOM = 0.05
 _APART = 0.05
 
 
-def refer_to_warnings(figure: Figure, warnings: Mapping[Any, list[Limit]]) -> None:
-    """Explain the numbers of the warnings below a figure, and add their texts to its caption."""
+def refer_to_warnings(figure: Figure, warnings: Mapping[Any, list[Limit]], *, above: bool = False) -> None:
+    """Explain the numbers of the warnings below or ``above`` a figure, and add their texts to its caption."""
     if sentences := with_numbers(warnings):
         numbers = "(1)" if len(sentences) == 1 else f"(1) to ({len(sentences)})"
         figure.set_label("\n".join(["Warnings:", *sentences]))
-        figure.supxlabel(f"{numbers}: beyond a limit of the model", fontsize=6, ha="left", x=0.01)
+        say = figure.suptitle if above else figure.supxlabel
+        say(f"{numbers}: beyond a limit of the model", fontsize=7, ha="left", x=0.01)
 
 
 @styled
@@ -187,7 +189,7 @@ def chart(
     letter_lines(lines, [f"{name}, gap {TO_UM * gap:g} µm, {END_STATES[shape].by}" for name, gap, shape in subjects])
     shown = sorted(zip(*handles(*columns[:, 0]), strict=True), key=lambda entry: isinstance(entry[0], PolyCollection))
     legend_outside(figure, tuple(zip(*shown, strict=True)), "lower", 2)
-    refer_to_warnings(figure, warnings)
+    refer_to_warnings(figure, warnings, above=is_page())  # clear of the legend
     return figure
 
 
@@ -195,7 +197,7 @@ def _mark_size_to_build(panel, name, answer, placed):
     """Mark the size to build of a device, with all that it states, in the air that decides; none that is forbidden."""
     if np.isfinite(answer.build) and not is_forbidden(answer):
         air = answer.together.humidity
-        at, label = placed.get(air, air), f"to build {name} as it is stated: {answer.in_words(answer.build)}"
+        at, label = placed.get(air, air), f"to build {name} as it is stated: {safe_size(answer.build, answer.sought)}"
         panel.plot(at, TO_UM * answer.build, "D", color=BUILD, markersize=5, zorder=4, label=label)
 
 

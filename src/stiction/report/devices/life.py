@@ -16,7 +16,7 @@ from stiction.contact.voltage import BREAKDOWN
 from stiction.plan.names import by_name
 from stiction.report import dots
 from stiction.report.answer import tables
-from stiction.report.format import MISSING, TO_MJ, TO_NM, TO_UM, TO_UN, fraction_between, listed
+from stiction.report.format import MISSING, TO_MJ, TO_NM, TO_UM, TO_UN, bounding, fraction_between, listed, safe_size
 from stiction.report.style import (
     BUILD,
     DOUBLE,
@@ -28,6 +28,7 @@ from stiction.report.style import (
     styled,
 )
 from stiction.report.table import Table, table_stage
+from stiction.rounding import is_equal
 from stiction.stages.answer.beside import is_short
 from stiction.stages.devices import device_warnings
 from stiction.stages.life.answers import FREE, HOLD, QUESTIONS, STICK, TOUCH, LifeRow, Name, answers_of
@@ -44,6 +45,8 @@ _UNITS = {
     "1": (100.0, "%"),
     "rad": (from_si(1.0, "deg"), "°"),
 }
+#: Whether sizes are safe if they are rounded up, by their unit for readers.
+_SAFE_SIDE = {sought.shown: sought.more_is_better for sought in SOUGHT.values()}
 #: What the answers are, for the table and for pages.
 CAPTION = (
     "The life of a device, in the order of a designer's questions: what brings a device into contact (touch), whether "
@@ -85,30 +88,39 @@ def table(life: Mapping[str, xr.Dataset]) -> Table:
         "device": (str, "device"),
         "question": (str, "question"),
         "what": (str, "what"),
-        "at least": (lambda number, needs: f"state {needs}" if needs else significant(number), "at_least", "needs"),
-        "at most": (significant, "at_most"),
+        "at least": (lambda *ends: bounds_in_words(*ends)[0], "at_least", "at_most", "unit"),
+        "at most": (lambda *ends: bounds_in_words(*ends)[1], "at_least", "at_most", "unit"),
         "±": (lambda error: significant(float(f"{error:.2g}")), "standard_uncertainty"),
         "unit": (str, "unit"),
-        "form": (str, "form"),
+        "form": (lambda form, needs: f"unknown: state {needs}" if needs else form, "form", "needs"),
         "source": (str, "source"),
     }
     return Table.of(rows, CAPTION, columns)
 
 
-def significant(value: float) -> str:
-    """Number with three significant digits and without an exponent, – for NaN.
+def significant(value: float, up: bool | None = None) -> str:
+    """Number with three significant digits and without an exponent, – for NaN. A bound is rounded ``up`` or down.
 
     Examples
     --------
     >>> significant(128764.0), significant(381.96), significant(0.0123), significant(float("inf"))
     ('129 000', '382', '0.0123', 'any')
+    >>> significant(128764.0, up=False), significant(381.96, up=False), significant(0.01231, up=True)
+    ('128 000', '381', '0.0124')
     """
     if np.isnan(value):
         return MISSING
     if np.isinf(value):
         return "any"
-    rounded = float(f"{value:.3g}")
+    rounded = float(f"{value:.3g}" if up is None else bounding(value, 3, up))
     return f"{rounded:,.0f}".replace(",", " ") if abs(rounded) >= 100 else f"{rounded:g}"
+
+
+def bounds_in_words(low: float, high: float, unit: str) -> tuple[str, str]:
+    """Texts of both bounds in a unit for readers: of sizes, rounded to their safe side, of others, outwards."""
+    if unit not in _SAFE_SIDE and is_equal(low, high, high):
+        return significant(low), significant(high)
+    return significant(low, _SAFE_SIDE.get(unit, False)), significant(high, _SAFE_SIDE.get(unit, True))
 
 
 # Sentences
@@ -151,7 +163,7 @@ def _beside(build, sought):
     """Note on the difference of simulated limits from the size to build."""
     if not 0 < build < np.inf:
         return []
-    size = f"{sought.name} to build, {sought.in_words(build)}"
+    size = f"{sought.name} to build, {safe_size(build, sought)}"
     return [f"The {size}, has inside all that is stated. Simulated limits below have one cause each and exact inputs."]
 
 
@@ -159,11 +171,8 @@ def judged_without(answer: Answer) -> list[str]:
     """Sentence on the stricter limits that nothing stated asks for."""
     if not answer.unasked or answer.forbidden:
         return []
-    named = "; ".join(f"{_label(one)}, {answer.in_words(one.size)}" for one in answer.unasked)
-    return [
-        f"The {answer.sought.name} to build does not contain these stricter simulated limits, as nothing that you "
-        f"stated asks for them: {named}."
-    ]
+    named = "; ".join(f"{_label(one)}, {safe_size(one.size, answer.sought)}" for one in answer.unasked)
+    return [f"Not inside, as nothing that you stated asks for it: {named}."]
 
 
 def _limit(answers, length):
@@ -323,12 +332,18 @@ def _often(answers, touchdowns, has_shares):
 
 def _low(answer: LifeRow) -> str:
     """Lower bound of an answer in its unit."""
-    return significant(_UNITS[answer.unit][0] * answer.low)
+    return _ends(answer)[0]
 
 
 def _high(answer: LifeRow) -> str:
     """Upper bound of an answer in its unit."""
-    return significant(_UNITS[answer.unit][0] * answer.high)
+    return _ends(answer)[1]
+
+
+def _ends(answer):
+    """Both bounds of an answer in its unit."""
+    factor, unit = _UNITS[answer.unit]
+    return bounds_in_words(factor * answer.low, factor * answer.high, unit)
 
 
 # Figure
@@ -382,7 +397,7 @@ def _marks(answers, build, widest):
     for answer in answers:
         least, scale = answer.high if np.isnan(answer.low) else answer.low, SOUGHT[answer.unit].scale
         colour, low, high = _COLOURS[answer.question], least / scale, answer.high / scale
-        text = " to ".join(dict.fromkeys([significant(low), significant(high)]))
+        text = " to ".join(end for end in dict.fromkeys(_ends(answer)) if end != MISSING)
         mark = dots.Mark(low, high, colour, text, text_color=_SHORT if is_short(answer, build) else "black")
         rows[textwrap.fill(_label(answer), widest)] = [mark]
     return rows

@@ -79,9 +79,11 @@ def device_page(name: str, section: Mapping[str, Any], data: Mapping[str, Any], 
         of_beams = tables_test_beams.warnings(test_beams)
         told, listed, limits = [tables_test_beams.notes(test_beams)], listed + texts(of_beams), [*of_beams, *limits]
     forbidding = texts(dict.fromkeys(limit for limit in limits if limit.forbids))
-    shown = screen.screen(answer, section, forbidding, (of_model or [_NO_ERROR])[0])
+    first, *others = of_model or [_NO_ERROR]
+    of_first, below = ("", [first, *others]) if of_model and answer.is_by_tip else (first, others)
+    shown = screen.screen(answer, section, forbidding, of_first)
     briefly = [] if roughness is None else sentences_roughness.briefly(roughness)
-    sentences = [*sentences, *filter(None, told), *briefly, *of_model[1:]]
+    sentences = [*sentences, *filter(None, told), *briefly, *below]
     sections = [*_steps(answer), *sections, *_sure(name, budgets or {}, errors), *_test_beam_sections(name, test_beams)]
     sections += _how_rough(name, roughness)
     terms = words | _words_of_budgets(budgets)

@@ -16,7 +16,7 @@ from stiction.report.budget import tables as tables_budget
 from stiction.report.devices import explorer, sentences, voltage_views
 from stiction.report.devices import figures as figures_devices
 from stiction.report.devices import tables as tables_devices
-from stiction.report.limits.words import texts, with_numbers
+from stiction.report.limits.words import lines_with_numbers, texts
 from stiction.report.page import Section
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.results import charts_of, results_of
@@ -88,7 +88,7 @@ def _parts_of_beam(name, section, data, answer):
         picture = figures_devices.chart(axis, {}, {name: (figures_devices.gap_of(section), answer)})
         sections.append(Section("Other thicknesses and humidities", (), cells, picture))
     texts_of_cases = [*sentences.few_sentences(lengths), *sentences.prediction_sentences(lengths)]
-    listed = with_numbers(warnings) + texts(sentences.shortest_warnings(section, answer))
+    listed = lines_with_numbers(warnings) + texts(sentences.shortest_warnings(section, answer))
     return sections, texts_of_cases, listed, _words_of_beam(data)
 
 

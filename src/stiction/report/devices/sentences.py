@@ -13,8 +13,7 @@ from stiction.contact.air import is_humid
 from stiction.devices.limits import rules
 from stiction.devices.limits.limit import Limit
 from stiction.devices.risk import Basis, one_in, samples_for
-from stiction.report.format import UM, UN, airs, fraction_with_band, with_error
-from stiction.rounding import in_percent
+from stiction.report.format import UM, UN, airs, bounding, fraction_with_band, with_error
 from stiction.stages.devices.opening import BEAMS, S_SHAPE
 from stiction.stages.devices.safe_lengths import chosen_share
 from stiction.stages.devices.stoppers import ends, in_any_air, is_at_an_end
@@ -68,7 +67,8 @@ def few_sentence(humidity: float, dataset: xr.Dataset) -> str:
     none = f"shorter than {shortest / UM:.0f} µm " if np.isfinite(shortest) else ""
     sentence = (
         f"{_at(humidity)}, hardly any device sticks: none of the {number} simulated ones {none}does, and at most "
-        f"{in_percent(most)} of those of {reach / UM:.0f} µm (95 % confidence, given the drawn surfaces)."
+        f"{bounding(100 * most, 2, up=True)} % of those of {reach / UM:.0f} µm (95 % confidence, given "
+        "the drawn surfaces)."
     )
     if str(held.basis.sel(share=share).values) == Basis.LONGEST:
         return sentence
@@ -94,12 +94,17 @@ def safe_force_sentences(stopper: xr.Dataset) -> list[str]:
     stated = stopper.safe_force.sel(part="safe").max("humidity").assign_coords(basis=stopper.basis)
     where = "at all these humidities" if stopper.sizes["humidity"] > 1 else airs([float(stopper.humidity[0])])
     return [
-        f"By simulation alone, {where}, a restoring force of {float(force) / UN:.3g} µN leaves at most "
+        f"By simulation alone, {where}, a restoring force of {_needed(force)} leaves at most "
         f"{one_in(float(force.share))} stuck ({_ON[str(force.basis.values)]})"
-        + (f"; at any humidity{_range(stopper)}, {float(more) / UN:.3g} µN are needed." if ends(stopper) else ".")
+        + (f"; at any humidity{_range(stopper)}, {_needed(more)} are needed." if ends(stopper) else ".")
         for force, more in zip(stated, in_any_air(stopper)[1], strict=True)
         if np.isfinite(force)
     ]
+
+
+def _needed(force):
+    """Restoring force that suffices, rounded up."""
+    return f"{bounding(float(force) / UN, 3, up=True)} µN"
 
 
 #: Reservation of the worst air by the mean.

@@ -9,12 +9,20 @@ import xarray as xr
 
 from stiction.devices.risk import Basis
 from stiction.plan.names import by_case
-from stiction.report.format import MISSING, UM, error_alone, fraction_with_band, humidity_text, number
+from stiction.report.format import (
+    MISSING,
+    UM,
+    error_alone,
+    fraction_with_band,
+    humidity_text,
+    lower_to,
+    number,
+)
 from stiction.report.limits import words
 from stiction.report.limits.words import numbered, texts, with_numbers
 from stiction.report.model_error import column
 from stiction.report.model_error import sentences as model_errors
-from stiction.report.table import DEVICE, Table, as_text, table_stage, with_list
+from stiction.report.table import DEVICE, Table, Term, as_text, table_stage, warned
 from stiction.rounding import in_percent
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.chart import axes, charts, largest_error_between
@@ -22,12 +30,21 @@ from stiction.stages.devices.device_warnings import curves, not_modelled
 from stiction.stages.devices.end_states import END_STATES
 
 _SAFE_LENGTHS = (
-    "Simulated limit: the largest length with at most a fraction p of the devices stuck, with a confidence of 95 %. "
-    "A cantilever sticks along its beam (S-shape) or at its tip alone (arc), a bridge at its "
-    "middle. Estimate: length with a fraction p stuck, with standard errors due to the number of beams and to the "
-    "number of sampled surfaces. Every beam has its own tip, and the scatter of the tips is part of the first error. "
-    "Basis: sampled, by order statistics; fitted, by a line through the shortest 5 %; extrapolated, by this line "
-    "beyond its verified range."
+    Term(
+        "Simulated limit",
+        "the largest length with at most a fraction p of the devices stuck, with a confidence of 95 %. A cantilever "
+        "sticks along its beam (S-shape) or at its tip alone (arc), a bridge at its middle.",
+    ),
+    Term(
+        "Estimate",
+        "length with a fraction p stuck, with standard errors due to the number of beams and to the number of sampled "
+        "surfaces. Every beam has its own tip, and the scatter of the tips is part of the first error.",
+    ),
+    Term(
+        "Basis",
+        "sampled, by order statistics; fitted, by a line through the shortest 5 %; extrapolated, by this line beyond "
+        "its verified range.",
+    ),
 )
 #: What these limits leave out.
 _EXACT = (
@@ -40,10 +57,10 @@ _FEW = {
 }
 _OF_BRIDGE = "For a bridge: no surface, however smooth, can hold a bridge shorter than this"
 _FLOODED = (
-    "Bound: for a cantilever, the sticking length of flat surfaces in contact, with water in all gaps. "
+    "for a cantilever, the sticking length of flat surfaces in contact, with water in all gaps. "
     f"{_OF_BRIDGE} at this humidity."
 )
-_DRY = f"Bound: for a cantilever, the sticking length of flats in contact, as no water condenses. {_OF_BRIDGE}."
+_DRY = f"for a cantilever, the sticking length of flats in contact, as no water condenses. {_OF_BRIDGE}."
 _OF_TIP = (
     "The bound of a tip has its edge and holds only on average. A single rough tip can stick harder than {}, so a "
     "fitted length may fall below it."
@@ -51,9 +68,13 @@ _OF_TIP = (
 _BOUND, _DRY_BOUND = f"{_FLOODED} {_OF_TIP.format('flat, flooded surfaces')}", f"{_DRY} {_OF_TIP.format('flats')}"
 _CHART = (
     "Simulated limit of beams of the thicknesses and gaps of a chart against relative humidity: the largest length "
-    "with at most a fraction p stuck, with a confidence of 95 %. From: finite elements, or a power law between their "
-    "sizes and humidities, with its largest error at beams outside its fit. One touchdown, no voltage, and all inputs "
-    "exact: table devices has lengths to build."
+    "with at most a fraction p stuck, with a confidence of 95 %.",
+    Term(
+        "From",
+        "finite elements, or a power law between their sizes and humidities, with its largest error at beams outside "
+        "its fit.",
+    ),
+    "One touchdown, no voltage, and all inputs exact: table devices has lengths to build.",
 )
 _CHART_BOUND = (
     f"{_FLOODED.replace('flat surfaces', 'flats')} A single rough tip can hold a shorter beam than flooded flats."
@@ -64,9 +85,10 @@ _CHART_WARNINGS = "The warnings are about the shortest length of each thickness 
 _WHERE_DRY = "Without condensation, bounds are those of flats in contact."
 
 #: P(stuck) of a beam at the length that its device states.
-_AT_LENGTH = (
-    "P(stuck): fraction of the devices stuck at their given length, with its 95 % band given the drawn surfaces, and "
-    "the standard error due to the number of these surfaces."
+_AT_LENGTH = Term(
+    "P(stuck)",
+    "fraction of the devices stuck at their given length, with its 95 % band given the drawn surfaces, and "
+    "the standard error due to the number of these surfaces.",
 )
 
 
@@ -88,11 +110,12 @@ _PREDICTION = {
     )
 }
 #: Meaning of this column.
-_PREDICTED = (
-    "95 %, form of the model: prediction interval of the estimate of a cantilever held by its beam, if this model errs "
+_PREDICTED = Term(
+    "95 %, form of the model",
+    "prediction interval of the estimate of a cantilever held by its beam, if this model errs "
     "on its pair as it does on the paper's, whose measured lengths show how far, with the standard errors. It is "
     "beside the simulated limit and does not change it. Tips, bridges and dry air, which the paper did not measure, "
-    "and devices with test beams have none."
+    "and devices with test beams have none.",
 )
 _COLUMNS_AT_LENGTH = {
     "length [µm]": (lambda length: number(length, "g"), "length_um"),
@@ -125,19 +148,13 @@ def safe_lengths(
             marks += [", ".join(map(str, numbers[device, humidity, shape]))] * dataset.sizes["share"]
     frame = pd.DataFrame(rows)
     at_length = _COLUMNS_AT_LENGTH if "length_um" in frame else {}
-    sentences = [
-        *([_AT_LENGTH] if at_length else []),
-        _SAFE_LENGTHS,
-        _EXACT,
-        *_few(datasets),
-        about_bounds(datasets, _BOUND, _DRY_BOUND, _WHERE_DRY),
-    ]
-    text, columns = " ".join(sentences), _HELD | at_length | _LENGTHS
+    shows, columns = (*_SAFE_LENGTHS, _EXACT, *_few(datasets)), _HELD | at_length | _LENGTHS
+    shows = *([_AT_LENGTH] if at_length else []), *shows, _bounds(datasets, _BOUND, _DRY_BOUND)
     if "prediction_low_um" in frame:
-        text, columns = f"{text} {_PREDICTED}", columns | _PREDICTION
+        shows, columns = (*shows, _PREDICTED), columns | _PREDICTION
     if errors:
-        text, columns = f"{text} {column.caption(errors)}", columns | column.COLUMN
-    return Table(frame, _caption(text, warnings, not_modelled), as_text(frame, columns).assign(warnings=marks))
+        shows, columns = (*shows, column.caption(errors)), columns | column.COLUMN
+    return Table(frame, (*shows, *_ends(warnings, not_modelled)), as_text(frame, columns).assign(warnings=marks))
 
 
 def _few(datasets):
@@ -145,7 +162,12 @@ def _few(datasets):
     bases = {str(basis) for dataset in datasets.values() for basis in dataset.basis.values.flat}
     if not (bases_in_words := [text for basis, text in _FEW.items() if basis in bases]):
         return []
-    return [f"Where few stick: {'; '.join(bases_in_words)}; an estimate beyond these is not known."]
+    return [Term("Where few stick", f"{'; '.join(bases_in_words)}; an estimate beyond these is not known.")]
+
+
+def _bounds(datasets, humid, dry):
+    """Meaning of the column of bounds."""
+    return Term("Bound", about_bounds(datasets, humid, dry, _WHERE_DRY))
 
 
 def about_bounds(datasets: Mapping[Any, xr.Dataset], humid: str, dry: str, where_dry: str) -> str:
@@ -159,10 +181,9 @@ def about_bounds(datasets: Mapping[Any, xr.Dataset], humid: str, dry: str, where
     return f"{humid} {where_dry}" if any(without_water) else humid
 
 
-def _caption(text, warnings, not_modelled):
-    """Caption with missing effects and, below each other, numbered warnings."""
-    listed = with_numbers(warnings)
-    return with_list(" ".join([text, not_modelled, *(["Warnings:"] if listed else [])]), listed)
+def _ends(warnings, not_modelled):
+    """End of a caption: missing effects and, below each other, numbered warnings."""
+    return not_modelled, *warned(with_numbers(warnings))
 
 
 def _safe_length(point):
@@ -188,12 +209,12 @@ def _bound(point):
 _HELD = DEVICE | {"held by": (str, "held_by")}
 _LENGTHS = {
     "p": ("g", "share"),
-    "simulated limit [µm]": (".1f", "safe_length_um"),
+    "simulated limit [µm]": (lower_to(1), "safe_length_um"),
     "estimate [µm]": (".1f", "estimate_um"),
     "se, beams": (error_alone, "estimate_se_beams_um"),
     "se, surfaces": (error_alone, "estimate_se_surfaces_um"),
     "basis": (str, "basis"),
-    "bound [µm]": (".1f", "bound_um"),
+    "bound [µm]": (lower_to(1), "bound_um"),
 }
 
 
@@ -222,9 +243,9 @@ def chart(
             lengths = dict(zip(dataset.share.values.tolist(), dataset.safe_length.values / UM, strict=True))
             rows += [beam | {"share": share, "safe_length_um": length} | last for share, length in lengths.items()]
             cells.append(_beam_as_text(beam, lengths) | marks)
-    bounds = about_bounds(datasets, _CHART_BOUND, _DRY_CHART_BOUND, _WHERE_DRY)
-    text = " ".join([_CHART, *_between(datasets), bounds, _CHART_WARNINGS])
-    return Table(pd.DataFrame(rows), _caption(text, warnings, not_modelled), pd.DataFrame(cells))
+    bounds = _bounds(datasets, _CHART_BOUND, _DRY_CHART_BOUND)
+    shows = *_CHART, *_between(datasets), bounds, _CHART_WARNINGS, *_ends(warnings, not_modelled)
+    return Table(pd.DataFrame(rows), shows, pd.DataFrame(cells))
 
 
 def _between(datasets):
@@ -232,7 +253,7 @@ def _between(datasets):
     error = max(map(largest_error_between, axes(datasets).values()), key=np.nan_to_num)
     if np.isnan(error):
         return []
-    return [f"Between these humidities, a monotone cubic through the logarithms errs by at most {in_percent(error)}."]
+    return [f"Between these humidities, a monotone cubic through the logarithms errs by ± {in_percent(error)}."]
 
 
 def _beam(point):
@@ -257,9 +278,9 @@ def _beam_as_text(beam, lengths):
         "gap [µm]": f"{beam['gap_um']:g}",
         "held by": beam["held_by"],
         "RH": humidity_text(beam["relative_humidity"]),
-        **{f"p = {share:g} [µm]": number(length, ".1f") for share, length in lengths.items()},
+        **{f"p = {share:g} [µm]": lower_to(1)(length) for share, length in lengths.items()},
         "from": beam["from"] + ("" if np.isnan(error) else f", ± {in_percent(error / 100)}"),
-        "bound [µm]": number(beam["bound_um"], ".1f"),
+        "bound [µm]": lower_to(1)(beam["bound_um"]),
     }
 
 

@@ -33,16 +33,12 @@ def sentence(limit: Limit, subjects: Sequence[Subject]) -> str:
     return f"{'; '.join(map(str, subjects))}: {words.text(limit)}"
 
 
-#: Kinds of limits that one line of a list has for all results of a pair or device, by the number that is worst.
-_MERGED = {"large_rotation": "slope"}
-
-
 def sentences(subjects: Mapping[Limit, Sequence[Subject]]) -> list[str]:
     """Sentences on different limits: of a device with many steep lengths, one on the steepest."""
     lines: dict[Any, list[Limit]] = {}
     for limit, named in subjects.items():
         names = {subject.name for subject in named}
-        key = (limit.kind, *names) if limit.kind in _MERGED and len(names) == 1 else limit
+        key = (words.line_of(limit), *names) if len(names) == 1 else limit
         lines.setdefault(key, []).append(limit)
     return [_of_worst(limits, subjects) for limits in lines.values()]
 
@@ -51,7 +47,7 @@ def _of_worst(limits, subjects):
     """Sentence on one limit, or on the worst of some."""
     if len(limits) == 1:
         return sentence(limits[0], subjects[limits[0]])
-    worst = max(limits, key=lambda limit: limit.numbers[_MERGED[limit.kind]])
+    worst = words.worst(limits)
     others = sum(len(subjects[limit]) for limit in limits) - len(subjects[worst])
     return f"{sentence(worst, subjects[worst])} This is the worst; {others} more results are beyond the same limit."
 

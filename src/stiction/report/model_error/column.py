@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.report.format import MISSING, signed
+from stiction.report.table import Term
 from stiction.stages.contact.corrections import errors_of_pairs
 
 
@@ -45,7 +46,7 @@ IN_DRY_AIR = " in dry air, and would change it in humid air"
 COLUMN = {"model error [%]": (marked_change, "model_error_percent", "model_error_se_percent", "interpolated")}
 
 
-def caption(errors: Mapping[Any, xr.Dataset]) -> str:
+def caption(errors: Mapping[Any, xr.Dataset]) -> Term:
     """Meaning of the column, from the datasets with the errors."""
     applied = {bool(flag) for error in errors.values() for flag in error.applied}
     does = "has changed what is stated" if True in applied else "would change what is stated"
@@ -53,10 +54,11 @@ def caption(errors: Mapping[Any, xr.Dataset]) -> str:
     others = ", or would change it where its error is too large" if by_levels else IN_DRY_AIR
     does += others * (len(applied) > 1)
     with_bounds = " Where it has, bounds contain its standard error." * (True in applied)
-    return (
-        f"Model error: by how much full elastic contact of the surfaces {does}, ± standard error over its strips; * "
+    return Term(
+        "Model error",
+        f"by how much full elastic contact of the surfaces {does}, ± standard error over its strips; * "
         "interpolated between the humidities at which it was computed, with the error of the interpolation; – not "
-        f"known. It has one sign and is no random error: it is part of no standard error.{with_bounds}"
+        f"known. It has one sign and is no random error: it is part of no standard error.{with_bounds}",
     )
 
 

@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from stiction.contact.air import humid
+from stiction.contact.air import Air, humid
 from stiction.plan.names import by_name
-from stiction.report.format import airs, signed
+from stiction.report.format import airs, listed, signed
 from stiction.report.model_error.column import change
 from stiction.rounding import in_percent
 from stiction.stages.devices.end_states import END_STATES
@@ -47,7 +47,7 @@ def sentences(device: str, errors: Mapping[str, xr.Dataset] | None) -> list[str]
         texts += _of_tips(error)
     texts += [_safe_side(uncorrected, sought)] if uncorrected else []
     if error.across_gaps:
-        return [*texts, "Contact of summits alone and full contact both have attraction across gaps."]
+        return [*texts, "Both models of contact, by summits and full, have the attraction across gaps."]
     gaps = "the other way in drier air: build no longer and rely on no smaller force because of it."
     return [*texts, f"Attraction across gaps is in neither model. It acts {gaps}"]
 
@@ -63,21 +63,24 @@ def _of_tips(error):
     """Sentences on what full contact does to tips, with and without a correction."""
     applied = np.where(error.by_levels, error.get("tips_applied", False), error.applied)
     corrected, others = (list(map(float, error.humidity.values[flags])) for flags in (applied, ~applied))
-    how = (
-        "Forces of tips are those of summits times the upper end, with 95 % confidence, of what full contact of tilted"
-    )
-    texts = [f"{how} strips with the edge of the tip shows."] if corrected else []
+    texts = [_corrected_tips(error, corrected)] if corrected else []
     where = f" {airs(others)}" * bool(corrected)
     unknown = error.by_levels.any() if corrected else True
     texts += [f"It is not known for what the tip holds{where}."] if unknown and others else []
-    return texts + [_ratio_of_tips(error, rh) for rh in humid(corrected) if "least_of_tips" in error]
+    return texts
+
+
+def _corrected_tips(error, corrected):
+    """Sentence on what tips hold over what summits hold, by their slope."""
+    by = [_ratio_of_tips(error, humidity) for humidity in humid(corrected) if "least_of_tips" in error]
+    holds = f": it holds {listed(by)} what its summits alone would, depending on its slope" if by else ""
+    return f"Full elastic contact changes the tip, too{holds}. Sizes contain the upper end (95 % confidence)."
 
 
 def _ratio_of_tips(error, humidity):
-    """Sentence on what tips hold over what summits hold, by their slope."""
+    """What tips hold over what summits hold."""
     least, largest = (float(error[f"{end}_of_tips"].sel(humidity=humidity)) for end in ("least", "largest"))
-    where = airs([humidity]).capitalize()
-    return f"{where} tips hold {least:.2f} to {largest:.2f} times what summits alone would, depending on their slope."
+    return f"{least:.2f} to {largest:.2f} times ({Air(humidity).words})"
 
 
 def _percent(row):

@@ -9,7 +9,7 @@ from stiction.beam.energy import CRACK_LENGTH_POWER
 from stiction.models import ALTERNATIVES_OF_SCANS
 from stiction.plan.names import by_name
 from stiction.report.format import NM, UM, signed, with_error
-from stiction.report.table import PAIR, Table, table_stage, with_list
+from stiction.report.table import PAIR, Line, Table, Term, table_stage
 from stiction.stages.laws.scan_uncertainty import GOAL
 from stiction.stages.surfaces import estimate as stage_estimate
 from stiction.stages.surfaces import scan as stage_scan
@@ -43,7 +43,7 @@ def scans(
         "its size. The moments of the surface, without the bias of levelling, are in the title of its sheet."
     )
     flags = [f"{name}: {flag}" for name, sentences in limits.items() for flag in sentences]
-    return Table.of(rows, with_list(caption, flags), _SCANS)
+    return Table.of(rows, [caption, *map(Line, flags)], _SCANS)
 
 
 def _scans(name, estimate, maps):
@@ -79,15 +79,22 @@ def scan_uncertainty(studies: Mapping[str, xr.Dataset]) -> Table:
     rows = [
         row for pair, study in studies.items() for k in range(study.sizes["humidity"]) for row in _rows(pair, study, k)
     ]
-    caption = (
+    shows = (
         "Relative standard error of the mean adhesion energy ē due to the finite scans of measured surfaces, by what "
         "the scans measure (skewness and kurtosis with their correlation), and of the mean crack length l_s; the total "
-        "± its standard error due to sampling. Needed: scans of each surface, the fewest in all, with which the error "
-        f"of ē is below {100 * GOAL:g} % where places are alike. Last columns: change of ē if measured surfaces had "
-        "the other value of the key, ± standard error due to sampling and, for heights, to the scans. Scans measure "
-        "the shape of the height density less precisely than the moments."
+        "± its standard error due to sampling.",
+        Term(
+            "Needed",
+            f"scans of each surface, the fewest in all, with which the error of ē is below {100 * GOAL:g} % where "
+            "places are alike.",
+        ),
+        Term(
+            "Last columns",
+            "change of ē if measured surfaces had the other value of the key, ± standard error due to sampling and, "
+            "for heights, to the scans. Scans measure the shape of the height density less precisely than the moments.",
+        ),
     )
-    return Table.of(rows, caption, _UNCERTAINTY | _choice_columns(rows))
+    return Table.of(rows, shows, _UNCERTAINTY | _choice_columns(rows))
 
 
 def _rows(pair, study, k):

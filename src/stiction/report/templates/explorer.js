@@ -162,23 +162,32 @@ function opened(number) {
     return size >= 1e-4 && size < 1e6 || !size ? String(rounded) : value.toExponential(digits - 1);
   }
   const grouped = number => /^\d{5,}$/.test(number) ? number.replace(/\B(?=(\d{3})+$)/g, " ") : number;
+
+  /** Text of a bound with some digits, never below it if up, else never above. Two more digits are those of the page. */
+  function bounding(value, digits, up) {
+    if (!Number.isFinite(value) || !value) return text(value);
+    const [mantissa, power] = value.toExponential(digits + 1).split("e"), steps = Number(`${mantissa}e${digits - 1}`);
+    return text(Number(`${up ? Math.ceil(steps) : Math.floor(steps)}e${Number(power) + 1 - digits}`), digits);
+  }
+  const safeText = size => bounding(size, DIGITS, grid.falls);
   const oneIn = share => `1 in ${grouped(text(1 / share))}`;
 
-  /** Fraction in percent with two digits, near all of them of the rest, as in report/answer/words.py. */
-  function percent(share, isEnd) {
-    if (share < 1e-5) return isEnd ? "0 %" : "less than 0.001 %";
-    if (share > 1 - 1e-3) return isEnd ? "100 %" : "more than 99.9 %";
+  /** Fraction in percent, or an end of a band, "low" or "high", rounded outwards, as in report/answer/words.py. */
+  function percent(share, end) {
+    if (share < 1e-5) return {low: "0 %", high: "0.001 %"}[end] ?? "less than 0.001 %";
+    if (share > 0.999) return {low: "99.9 %", high: "100 %"}[end] ?? "more than 99.9 %";
+    if (end) return `${share > 0.99 ? Number((100 - bounding(100 * (1 - share), 2, end === "low")).toPrecision(4)) : bounding(100 * share, 2, end === "high")} %`;
     if (share > 0.99) return `${Number((100 - Number((100 * (1 - share)).toPrecision(2))).toPrecision(4))} %`;
     return `${Number((100 * share).toPrecision(2))} %`;
   }
 
   function stuckText({share, low, high, beyond}) {
     if (Number.isNaN(share)) return MISSING;
-    const [most, mean] = [percent(high, true), percent(share)], more = share > high && mean !== most ? ` (95 % confidence; many can in the other 5 % of all cases, ${mean} on average)` : "";
-    if (beyond < 0) return high > 1 - 1e-3 ? "0 to 100 %" : `at most ${most}${more}`;
-    if (low > 1 - 1e-3) return percent(low);
-    if (beyond) return `at least ${percent(low, true)}`;
-    return `${percent(share)} (${percent(low, true).replace(" %", "")} to ${percent(high, true)})`;
+    const [most, mean] = [percent(high, "high"), percent(share)], more = share > high && mean !== most ? ` (95 % confidence; many can in the other 5 % of all cases, ${mean} on average)` : "";
+    if (beyond < 0) return high > 0.999 ? "0 to 100 %" : `at most ${most}${more}`;
+    if (low > 0.999) return percent(low);
+    if (beyond) return `at least ${percent(low, "low")}`;
+    return `${percent(share)} (${percent(low, "low").replace(" %", "")} to ${percent(high, "high")})`;
   }
 
   const valueText = (axis, value) => axis.key === "humidity" && value === 0 ? "dry air" : `${text(value, DIGITS)}${axis.unit && ` ${axis.unit}`}`;
@@ -274,7 +283,7 @@ function opened(number) {
     const at = `${quantity.label[0].toUpperCase()}${quantity.label.slice(1)} ${valueText(quantity, state[quantity.key])}`;
     const between = ([low, high]) => `${text(low, DIGITS)} to ${text(high, DIGITS)}`, beyond = Math.abs(margin) >= grid.largest;
     const unknown = Number.isFinite(margin) ? "beyond a factor of 1000 of the required one" : "not computed here";
-    const safe = grid.lines.safe ? `; ${text(grid.size.start * Math.exp((grid.falls ? -1 : 1) * onLine("safe", state)), DIGITS)} ${grid.size.unit} with 95 % confidence` : "";
+    const safe = grid.lines.safe ? `; ${safeText(grid.size.start * Math.exp((grid.falls ? -1 : 1) * onLine("safe", state)))} ${grid.size.unit} with 95 % confidence` : "";
     return {
       enough: `${at}: ${suffices(state) ? words.yes : words.no}`,
       size: `${words.size}: ${beyond || !Number.isFinite(margin) ? unknown : `${text(size, DIGITS)} ${grid.size.unit} (${between(band)} ${grid.size.unit})${safe}`}`,
@@ -288,7 +297,7 @@ function opened(number) {
     const safe = safeSize(state);
     return {
       stuck: `${words.stick}: ${stuckText(stuckAt(state[grid.size.key], levels))}`,
-      safe: `${words.safe} for ${oneIn(state.share)}${Number(words.all_airs) === state.humidity ? ", all airs together" : ""}: ${Number.isFinite(safe) ? `${text(safe, DIGITS)} ${unit}` : words.none ?? `not known from ${grid.samples} devices`}`,
+      safe: `${words.safe} for ${oneIn(state.share)}${Number(words.all_airs) === state.humidity ? ", all airs together" : ""}: ${Number.isFinite(safe) ? `${safeText(safe)} ${unit}` : words.none ?? `not known from ${grid.samples} devices`}`,
     };
   }
 
@@ -349,15 +358,16 @@ function opened(number) {
       const height = share => chart.y(Math.max(Math.log10(share), LEAST));
       const known = levels.layers[0][0], within = v => v >= known[0] && v <= known[known.length - 1];
       const points = spread(...ends).map(value => [value, sign * Math.log(value)]).filter(([, v]) => within(v))
-        .map(([value, v]) => [chart.x(value), fractionsAt(levels.layers, v)]);
-      const layers = [0, 1, 2].map(k => points.map(([x, fractions]) => [x, height(fractions[k])]));
-      make(chart.svg, "path", {class: "band", d: path([...layers[1], ...layers[2].reverse()])});
-      make(chart.svg, "path", {class: "curve", d: path(layers[0])});
+        .map(([value, v]) => [chart.x(value), v, fractionsAt(levels.layers, v)]);
+      const layer = (k, shown) => shown.map(([x, , fractions]) => [x, height(fractions[k])]);
+      const resolved = points.filter(([, v]) => v >= (levels.layers[2][0][0] ?? -Infinity) - SAME);
+      make(chart.svg, "path", {class: "band", d: path([...layer(1, resolved), ...layer(2, resolved).reverse()])});
+      make(chart.svg, "path", {class: "curve", d: path(layer(0, points))});
       if (Number.isFinite(bound)) make(chart.svg, "line", {class: "safe", x1: chart.x(bound), x2: chart.x(bound), y1: TOP, y2: HEIGHT - BOTTOM});
       const here = stuckAt(state[size.key], levels).share;
       if (Number.isFinite(here)) make(chart.svg, "circle", {r: 6, class: "here", cx: chart.x(state[size.key]), cy: height(here)});
       const dashed = Number.isFinite(bound) ? ` Dashed: ${data.words.bound} for ${oneIn(state.share)}.` : "";
-      hover(chart, ends, value => `At ${text(value)} ${unit}: ${stuckText(stuckAt(value, levels))}. Line: expected. Band: 95 %.${dashed}`, () => state[size.key])();
+      hover(chart, ends, value => `At ${text(value, DIGITS)} ${unit}: ${stuckText(stuckAt(value, levels))}. Line: expected. Band: 95 %, where the simulation resolves it.${dashed}`, () => state[size.key])();
     };
   }
 
@@ -413,7 +423,7 @@ function opened(number) {
     const curve = make(chart.svg, "path", {class: "curve"}), marks = axis.values.map(() => make(chart.svg, "circle", {r: 3, class: "mark"}));
     const dot = make(chart.svg, "circle", {r: 6, class: "here"});
     const safe = value => safeSize({...state, [axis.key]: value});
-    const describe = value => `At ${valueText(axis, value)}: ${data.words.bound} ${text(safe(value), DIGITS)} ${unit}. Small dots: computed.${Number.isFinite(noise()) ? ` Band: error between them, ± ${text(100 * noise(), 2)} %.` : ""}`;
+    const describe = value => `At ${valueText(axis, value)}: ${data.words.bound} ${safeText(safe(value))} ${unit}. Small dots: computed.${Number.isFinite(noise()) ? ` Band: error between them, ± ${text(100 * noise(), 2)} %.` : ""}`;
     const caption = hover(chart, ends, value => describe(nearest(axis, value)), () => state[axis.key]);
     return () => {
       const points = axis.between ? spread(...ends).map(value => [value, safe(value)]) : [];

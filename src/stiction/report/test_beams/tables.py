@@ -10,9 +10,9 @@ from stiction.contact.air import humid
 from stiction.devices import inference
 from stiction.devices.limits.limit import Limit, Side
 from stiction.plan.names import by_name
-from stiction.report.format import TO_UM, airs, number, with_error
+from stiction.report.format import TO_UM, airs, number, safe_size, with_error
 from stiction.report.limits import words
-from stiction.report.table import DEVICE, Table, table_stage, with_list
+from stiction.report.table import DEVICE, Line, Table, table_stage
 from stiction.rounding import in_percent
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.opening import ARC, MIDDLE, S_SHAPE, SOUGHT_BY
@@ -167,7 +167,7 @@ def stuck_sentences(update: xr.Dataset) -> list[str]:
     every = (chosen.sel(humidity=humidity) for humidity in update.humidity.values)
     for at in (in_air for in_air in every if np.isfinite(in_air.updated_stuck)):
         stated = f"at its {sought.label}"
-        size = stated if sought.more_is_better else f"of {sought.in_words(float(at.safe))}, the simulated limit,"
+        size = stated if sought.more_is_better else f"of {safe_size(float(at.safe), sought)}, the simulated limit,"
         sentences.append(
             f"{airs([float(at.humidity)]).capitalize()}, {in_percent(at.expected_stuck)} of the devices {size} are "
             f"expected to stick without the test beams and {in_percent(at.updated_stuck)} with them, averaged over the "
@@ -204,7 +204,7 @@ def test_beams(datasets: Mapping[str, xr.Dataset]) -> Table:
     )
     missing = {"measured"} - {name for row in rows for name in row}
     columns = {name: column for name, column in _COLUMNS.items() if name not in missing}
-    return Table.of(rows, with_list(caption, sentences), columns)
+    return Table.of(rows, [caption, *map(Line, sentences)], columns)
 
 
 def _data(device, update):
@@ -293,7 +293,7 @@ def _number(value, deviation):
 
 
 _COLUMNS = DEVICE | {
-    "what": (lambda part, name: f"{name}: {part}", "part", "name"),
+    "what": (lambda share, name: f"{name}: {share}", "part", "name"),
     "before": (_number, "before", "before_std"),
     "after": (_number, "after", "after_std"),
     "measured": (

@@ -47,8 +47,8 @@ class AskedSurface:
     @property
     def numbers(self) -> dict[str, float]:
         """All of its numbers by name, in SI."""
-        own = asdict(self)
-        return own.pop("published_psd") | own
+        numbers = asdict(self)
+        return numbers.pop("published_psd") | numbers
 
 
 @dataclass(frozen=True)
@@ -126,31 +126,30 @@ def compute(lengths: Mapping[float, xr.Dataset], settings: Settings) -> xr.Datas
     """Lengths of a run and of the estimate, by humidity and fraction of stuck devices."""
     runs = {}
     for air, of_air in lengths.items():
-        one = of_air.isel(shape=-1)  # whatever holds it
-        error = np.hypot(one.beams_error, one.surfaces_error.fillna(0))
-        runs[air] = one.estimate.where(np.isfinite(one.estimate)), error
-    return _beside(runs, settings, "length", "m")
+        by_any = of_air.isel(shape=-1)  # whatever holds it
+        error = np.hypot(by_any.beams_error, by_any.surfaces_error.fillna(0))
+        runs[air] = by_any.estimate.where(np.isfinite(by_any.estimate)), error
+    return _beside(runs, settings, "length")
 
 
 def compute_stopper(stopper: xr.Dataset, settings: SettingsOfStopper) -> xr.Dataset:
     """Forces of a run and of the estimate, by humidity and fraction of stuck devices."""
     forces = stopper.safe_force
     runs = {air: tuple(forces.sel(humidity=air, part=["estimate", "error"])) for air in forces.humidity.values}
-    return _beside(runs, settings, "force", "N")
+    return _beside(runs, settings, "force")
 
 
-def _beside(runs: Runs, settings: Settings | SettingsOfStopper, name: str, unit: str) -> xr.Dataset:
-    """Sizes of a run, with their name and unit, and of the estimate."""
+def _beside(runs: Runs, settings: Settings | SettingsOfStopper, name: str) -> xr.Dataset:
+    """Sizes of a run, with their name, and of the estimate."""
     shares = next(iter(runs.values()))[0].share.values
     refused, estimates = zip(*(_estimated(settings, air, shares) for air in runs), strict=True)
-    over, of_size, none = ("humidity", "share"), {"units": unit}, {"units": "1"}
+    over = ("humidity", "share")
     sizes, errors = zip(*runs.values(), strict=True)
-    found = {name: sizes, f"{name}_error": errors}
-    found |= dict(zip(("estimate", "low", "high"), np.moveaxis(np.array(estimates), 2, 0), strict=True))
+    columns = {name: sizes, f"{name}_error": errors}
+    columns |= dict(zip(("estimate", "low", "high"), np.moveaxis(np.array(estimates), 2, 0), strict=True))
     dataset = xr.Dataset(
-        {name: (over, np.array(values), of_size) for name, values in found.items()}
-        | {"refused": ("humidity", list(refused))},
-        {"humidity": ("humidity", list(runs), none), "share": ("share", shares, none)},
+        {name: (over, np.array(values)) for name, values in columns.items()} | {"refused": ("humidity", list(refused))},
+        {"humidity": ("humidity", list(runs)), "share": ("share", shares)},
     )
     return dataset.assign(_inputs_of(settings.asked) if settings.asked else {})
 
@@ -200,7 +199,7 @@ LENGTHS, FORCES = "device_estimate", "stopper_estimate"
 _FOLDERS = {LENGTHS: "devices/estimate", FORCES: "devices/estimate_of_force"}
 
 
-def _settings(of):
+def _settings(kind_of_numbers):
     """Settings of a stage by the class of its numbers: these of a device, or why the estimate refuses it."""
 
     def settings(plan, at):
@@ -210,18 +209,18 @@ def _settings(of):
         if isinstance(question, NotLearnt):
             return {"refused": str(question)}
         pair, surfaces = plan.config["pairs"][section["pair"]], plan.config["surfaces"]
-        return {"asked": select(of, section | {side: surfaces[pair[side]] for side in SIDES})}
+        return {"asked": select(kind_of_numbers, section | {side: surfaces[pair[side]] for side in SIDES})}
 
     return settings
 
 
-def _stage(name, of, kind, result, compute):
+def _stage(name, kind_of_numbers, kind, result, compute):
     """Stage of the estimates of some devices beside a result of their runs."""
     return Stage.writing(
         name,
         f"{_FOLDERS[name]}/{{device}}",
         inputs=lambda plan, at: results_of(plan, at.device, result) | {"table": File(FILE)},
-        settings=_settings(of),
+        settings=_settings(kind_of_numbers),
         kind=kind,
         compute=compute,
         message="Estimate at once of {device} beside its run.",

@@ -44,7 +44,7 @@ def stopper_answers(
         )
         for humidity in stopper.humidity.values
     ]
-    subject = f"mean pull-off force {where}{', the worst air' * (stopper.sizes['axis'] > 1)}"
+    subject = f"mean pull-off force {where}{', its largest' * (stopper.sizes['axis'] > 1)}"
     answers.append(
         LifeRow("force", HOLD, subject, mean, mean, error, "N", "largest attraction x area", "stage stoppers")
     )
