@@ -119,7 +119,7 @@ class AskedStopper:
 def _own(asked):
     """Variable of a Hamaker constant that differs from that of polysilicon."""
     own = asked.hamaker_constant
-    return {} if own == POLYSILICON else {"hamaker_constant": ((), own, {"units": "J"})}
+    return {} if own == POLYSILICON else {"hamaker_constant": ((), own)}
 
 
 @dataclass(frozen=True)
