@@ -232,12 +232,14 @@ def test_few_finite_lengths_are_tested_and_not_learnt(monkeypatch, free, learnt,
 
 
 def test_rows_of_full_contact_follow_energy_and_attraction(monkeypatch):
-    stored(monkeypatch, bridge_rows, numbers_of(), {key: numbers_of()[key] for key in ("airs", "sizes", "lengths")})
+    without = {key: numbers_of()[key] for key in ("airs", "sizes", "lengths")}
+    stored(monkeypatch, bridge_rows, numbers_of(), without, numbers_of() | {"ratio": 0.9, "ratio_error": 0.1})
     rows = bridge_rows.rows_of_changes(Path(), "learn", 164e9)
-    assert rows.surface.tolist() == [0]
-    np.testing.assert_allclose(rows.values["shift"], -math.log(0.7 * 0.8) / 8)
+    assert rows.surface.tolist() == [0, 2]
+    np.testing.assert_allclose(rows.values["shift"], [-math.log(0.7 * 0.8) / 8, -math.log(0.9 * 0.8) / 8])
     np.testing.assert_allclose(rows.values["power"], 1.0, atol=1e-6)
-    np.testing.assert_allclose(rows.noise, 0.05)
+    np.testing.assert_allclose(rows.noise, [0.05, 0.1])
+    np.testing.assert_allclose(rows.coordinates, [STATE.coordinates] * 2, rtol=1e-9)
 
 
 def test_a_tested_length_is_that_of_bridges_in_full_contact(monkeypatch):

@@ -8,7 +8,7 @@ As `stiction.estimate.learning.training`, whose surfaces and air they have, and 
 
 import math
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -106,7 +106,8 @@ class TrainingStrips:
     water: Water
     device: DesignedBeam
     chaos: Truncation
-    address: Callable  #: of random numbers
+    seed: int
+    number: int  #: of the point
 
     @classmethod
     def of(cls, point: Point, plan: Plan, strips: int, seed: int) -> "TrainingStrips":
@@ -118,8 +119,7 @@ class TrainingStrips:
         surfaces = surfaces_of(plan)
         found = contact.compute(surfaces, f"estimate{point.number}", "NG", settings)
         strips = with_correlations(found, surfaces, (device.strip, device.width))
-        address = partial(stream, seed, "estimate", "bridges", point.number)
-        return cls(strips, water_of(plan), device, Truncation(**plan.config["chaos"]), address)
+        return cls(strips, water_of(plan), device, Truncation(**plan.config["chaos"]), seed, point.number)
 
     def lengths(self, height: float, sizes: np.ndarray, number: int, change: Correction | None = None) -> np.ndarray:
         """Lengths that the middle of a number of bridges holds in a film of a height [m], of sizes (3,) [SI]."""
@@ -127,8 +127,13 @@ class TrainingStrips:
         own = replace(self, water=replace(self.water, correction=change))
         laws = sticking.fitted_laws(own.contact, air, own, (self.device.strip, self.device.width))
         bridge = replace(self.device, **dict(zip(("thickness", "gap", "residual_stress"), sizes, strict=True)))
-        ground = opening.ground_of(bridge, laws.draw(opening.LAWS, self.address("mesh")))
-        return opening.arrests(bridge, ground, laws.in_row(bridge), number, partial(self.address, f"{air:.6f}"))
+        drawn = laws.draw(opening.LAWS, stream(self.seed, "estimate", "mesh", self.number))
+
+        def address(k):
+            """Stream of bridge k."""
+            return stream(self.seed, "estimate", "bridges", self.number, f"{air:.6f}", k)
+
+        return opening.arrests(bridge, opening.ground_of(bridge, drawn), laws.in_row(bridge), number, address)
 
 
 def ratio_of_energies(point: Point, plan: Plan, height: float, seed: int) -> levels.Ratio:
@@ -139,8 +144,7 @@ def ratio_of_energies(point: Point, plan: Plan, height: float, seed: int) -> lev
     settings = replace(settings, beam=replace(settings.beam, width=_WIDTH))
     try:
         strips = full_energy.strips_of(surfaces_of(plan), f"estimate{point.number}", settings)
-        random = stream(seed, "full_energy", point.number)
-        return levels.ratio_of_means(strips.energy, full_energy.GRIDS, _ERROR, random)
+        return full_energy.ratio_of_energies(strips, _ERROR, seed, point.number)
     except (NotConverged, TooLong, ValueError):
         return full_energy.UNKNOWN
 
