@@ -86,6 +86,8 @@ def in_python(question, table):
     own = {key: value for key, value in question.items() if key not in ("beams", "substrate", "humidities")}
     named = {str(k): member for k, member in enumerate(members)}
     of = next((one for key, one in (("sides", Stopper), ("stress", Bridge)) if key in question), Question)
+    if of is Bridge:
+        own.pop("constant")  # counts in dry air alone, where bridges are refused
     asked = of("", (stated, other), (named, {}), tuple(question["humidities"]), **own)
     try:
         found = answer(asked, table, table_of_estimate.process("tips"), table_of_estimate.process("full"))
