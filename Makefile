@@ -137,6 +137,8 @@ surrogate: export OPENBLAS_NUM_THREADS := 1
 surrogate: $(VENV)/ready
 	$(BIN)/python -m stiction.estimate.learning.training runs/surrogate
 	$(BIN)/python -m stiction.estimate.learning.patches runs/surrogate
+	$(BIN)/python -m stiction.estimate.learning.dry runs/surrogate
+	$(BIN)/python -m stiction.estimate.learning.dry_patches runs/surrogate
 	$(BIN)/python -m stiction.estimate.learning.make runs/surrogate
 	$(BIN)/python -m stiction.estimate.page docs/_static/estimate.html
 	$(BIN)/python -m stiction.estimate.learning.held_out runs/surrogate docs/tables/safe_lengths.csv docs/tables/stoppers.csv \

@@ -1,10 +1,10 @@
 """Bring the docs up to date with a run: ``python docs/update.py results``, the command ``make numbers``.
 
-1. If the folder holds a finished run of the paper, its tables and small copies of its pictures go to ``docs/tables``
-   and ``docs/pictures``. Otherwise those from an earlier run are kept. The same holds for the runs of ``make example``,
-   ``make example-process``, ``make measured-beams``, ``make devices``, ``make sealed``, ``make attraction``, ``make
-   print``, ``make validation``, ``stiction devices examples/NAME.yaml --directory runs/NAME`` with the names roughness
-   and test_beams in folders of ``runs`` beside it.
+1. If the folder holds a finished run of the paper, its tables go to ``docs/tables``, and its pictures, drawn again as
+   on a page, to ``docs/pictures``. Otherwise those from an earlier run are kept. The same holds for the runs of ``make
+   example``, ``make example-process``, ``make measured-beams``, ``make devices``, ``make sealed``, ``make attraction``,
+   ``make print``, ``make validation``, ``stiction devices examples/NAME.yaml --directory runs/NAME`` with the names
+   roughness and test_beams in folders of ``runs`` beside it.
 2. ``docs/results.json`` receives the numbers quoted by the pages, and a checksum of each table and picture. The package
    receives the lengths from which runs of devices learn how far the model errs.
 3. The drawings are drawn, the tables of keys and of rules and the files of ``workflow/rules`` are written, and the
@@ -21,6 +21,7 @@ import subprocess
 import sys
 from functools import partial
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 import pandas as pd
@@ -45,6 +46,7 @@ from stiction.stages.laws.forces import vectors
 
 sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parents[1] / "tests")]
 import keys  # noqa: E402
+import narrow  # noqa: E402
 import quoted  # noqa: E402
 import reruns  # noqa: E402
 import rules  # noqa: E402
@@ -57,47 +59,36 @@ ROOT = DOCS.parent
 MADE = {"keys": keys.page, "sections": keys.sections, "chain": rules.chain_table}
 #: Tables whose numbers are quoted; their Markdown files are also shown.
 TABLES = ("table_1", "table_2", "table_3", "fit_quality", "sensitivity", "variants", "resampling")
-#: Pictures that pages show, by their width there [pixels].
-PICTURES = {
-    "overview": 1400,
-    "intervals": 1100,
-    "figure_05": 700,
-    "figure_07": 900,
-    "figure_08": 1000,
-    "figure_09": 700,
-    "figure_10": 1100,
-    "figure_11": 900,
-    "figure_12": 1100,
-    "figure_13": 1000,
-    "figure_14": 1100,
-    "figure_15": 1100,
-    "figure_16": 1000,
-    "figure_17": 1000,
-    "figure_18": 1000,
-    "figure_19": 1100,
-    "variants": 1100,
-}
-#: Tables and pictures of ``make example``: place in its folder, without ending; pictures by their width [pixels].
+#: Pictures of the paper that pages show.
+PICTURES = (
+    "overview",
+    "intervals",
+    *(f"figure_{number}" for number in ("05", "07", "08", "09", *range(10, 20))),
+    "variants",
+)
+#: Width of the pictures [pixels].
+WIDTH = 700
+#: Tables, and pictures of the run and of the script, of ``make example``: place in its folder, without ending.
 EXAMPLE_TABLES = {
     "example_scans": "results/tables/scans",
     "example_scan_uncertainty": "results/tables/scan_uncertainty",
     "example_prediction": "prediction",
 }
-EXAMPLE_PICTURES = {"results/figures/surface_sheet_Etched": 1380, "prediction": 700}
+EXAMPLE_PICTURES, EXAMPLE_DRAWN = ("surface_sheet_Etched",), "prediction"
 #: Table and picture of ``make example-beams``.
 DRAWN_BEAMS = "drawn_beams"
 #: Numbers and table of ``make measured-beams``.
 MEASURED_BEAMS = "measured_beams"
-#: Tables and pictures of ``make devices``; pictures by their width [pixels].
+#: Tables and pictures of ``make devices``.
 DEVICE_TABLES = ("devices", "safe_lengths", "stoppers", "budget", "life")
-DEVICE_PICTURES = {"risk": 1400, "chart": 1200, "stoppers": 700, "budget_C1": 660, "life": 1200}
-#: Table, and pictures by their width [pixels], of ``make devices CONFIG=examples/roughness.yaml``.
+DEVICE_PICTURES = ("risk", "chart", "stoppers", "budget_C1", "life")
+#: Table and pictures of ``make devices CONFIG=examples/roughness.yaml``.
 ROUGHNESS = "roughness"
 #: Table, sentences and pictures of ``make example-process``.
 PROCESS, PROCESS_SAID = "process", "process_answers"
-PROCESS_PICTURES = {"process_Bump": 700, "process_law_etch": 1100}
-ROUGHNESS_PICTURES = {"roughness_Bump": 700, "roughness_Lever": 1000, "roughness_map_Skewed": 700}
-#: Sentences, and picture with its width [pixels], of ``make devices CONFIG=examples/test_beams.yaml``.
+PROCESS_PICTURES = ("process_Bump", "process_law_etch")
+ROUGHNESS_PICTURES = ("roughness_Bump", "roughness_Lever", "roughness_map_Skewed")
+#: Sentences and picture of ``make devices CONFIG=examples/test_beams.yaml``.
 TEST_BEAMS = "test_beams"
 TEST_BEAMS_SAID = {
     "build": lambda update, answer: " ".join(
@@ -106,13 +97,13 @@ TEST_BEAMS_SAID = {
     "further": lambda update, answer: tables_test_beams.beams_to_add(update),
     "warned": lambda update, answer: " ".join(words.texts(tables_test_beams.warnings(update))),
 }
-TEST_BEAMS_PICTURE = ("test_beams_onB", 1100)
-#: Tables of studies with a command of their own: command, and width of the picture of the same name [pixels] or 0.
+TEST_BEAMS_PICTURE = "test_beams_onB"
+#: Tables of studies with a command of their own: command, and whether there is a picture of the same name.
 OWN_STUDIES = {
-    "model_error": ("make model-error", 1100),
-    "asperities": ("make asperities", 660),
-    "model_error_parts": ("make asperities", 0),
-    "pressing": ("make pressing", 700),
+    "model_error": ("make model-error", True),
+    "asperities": ("make asperities", True),
+    "model_error_parts": ("make asperities", False),
+    "pressing": ("make pressing", True),
 }
 #: Tables of ``make sealed``.
 SEALED_TABLES = ("safe_lengths", "stoppers")
@@ -127,9 +118,9 @@ SUPPLEMENT = {
     f"supplement_{name}": f"supplement/{name}" for name in ("greenwood_williamson", "sizes", "surfaces", "shares")
 }
 SUPPLEMENT_PICTURE = "supplement"
-#: Tables of ``make validation`` by their files in its folder, and its picture with its width [pixels].
+#: Tables of ``make validation`` by their files in its folder, and its picture.
 VALIDATION = {"validation.csv": "validation.csv", "validation.md": "validation.md", "validation_misses.md": "misses.md"}
-VALIDATION_PICTURE = ("validation", 720)
+VALIDATION_PICTURE = "validation"
 #: Statements of the paper one by one: a table with a template.
 BESIDE = "beside_the_paper"
 #: Table of ``make tails``, in Markdown alone.
@@ -189,11 +180,15 @@ def unfinished_study(name, results):
     command, _ = OWN_STUDIES[name]
     if not (results / "tables" / f"{name}.csv").exists():
         return f"{results} holds no results of {command}"
-    more = ROOT / "config.yaml", ROOT / "workflow" / "model_error.yaml"
-    configs = ("--configfile", *more) if name == "model_error" else ()
-    if up_to_date(results.resolve().parent, command.removeprefix("make ").replace("-", "_"), *configs):
+    more = ("--configfile", *configs_of_study(name)) if name == "model_error" else ()
+    if up_to_date(results.resolve().parent, command.removeprefix("make ").replace("-", "_"), *more):
         return ""
     return f"{results} is not up to date with config.yaml and the code, see {command} ARGS=-n"
+
+
+def configs_of_study(name):
+    """Configuration files of a study of `OWN_STUDIES`."""
+    return ROOT / "config.yaml", *[ROOT / "workflow" / "model_error.yaml"] * (name == "model_error")
 
 
 def unfinished_example(folder, target="measured", result="prediction.md"):
@@ -215,10 +210,14 @@ def unfinished_devices(example, table, folder):
     """Why a folder does not hold a finished run of an example of devices by this code; empty if it does."""
     if not (folder / "results" / "tables" / f"{table}.csv").exists():
         return f"{folder} holds no finished run"
-    file = ROOT / "examples" / f"{example}.yaml"
-    if up_to_date(folder.resolve(), "devices", "--configfile", ROOT / "config.yaml", file):
+    if up_to_date(folder.resolve(), "devices", "--configfile", *configs_of_example(example)):
         return ""
-    return f"{folder} is not up to date with examples/{file.name} and the code, see stiction devices"
+    return f"{folder} is not up to date with examples/{example}.yaml and the code, see stiction devices"
+
+
+def configs_of_example(name):
+    """Configuration files of an example of devices."""
+    return ROOT / "config.yaml", ROOT / "examples" / f"{name}.yaml"
 
 
 def unfinished_attraction(folder):
@@ -276,17 +275,16 @@ def collect(results):
     (DOCS / "tables" / "jobs.md").write_text(jobs.table(results), encoding="utf-8")
     compared = quoted.compared_lengths(quoted.frame(DOCS / "tables" / "table_3.csv"))
     (DOCS / "tables" / "crack_lengths.md").write_text(compared + "\n", encoding="utf-8")
-    for name, width in PICTURES.items():
-        if (picture := results / "figures" / f"{name}.png").exists():
-            shrink(picture, DOCS / "pictures" / f"{name}.png", width)
+    drawn = [name for name in PICTURES if (results / "figures" / f"{name}.png").exists()]
+    redraw(results.parent, drawn, ROOT / "config.yaml")
 
 
 def collect_study(name, results):
     """Copy table and picture of a study of `OWN_STUDIES`."""
     for kind in ("csv", "md"):
         shutil.copyfile(results / "tables" / f"{name}.{kind}", DOCS / "tables" / f"{name}.{kind}")
-    if width := OWN_STUDIES[name][1]:
-        shrink(results / "figures" / f"{name}.png", DOCS / "pictures" / f"{name}.png", width)
+    if OWN_STUDIES[name][1]:
+        redraw(results.parent, [name], *configs_of_study(name))
 
 
 def collect_example(folder):
@@ -294,15 +292,15 @@ def collect_example(folder):
     for name, place in EXAMPLE_TABLES.items():
         for kind in ("csv", "md"):
             shutil.copyfile(folder / f"{place}.{kind}", DOCS / "tables" / f"{name}.{kind}")
-    for place, width in EXAMPLE_PICTURES.items():
-        shrink(folder / f"{place}.png", DOCS / "pictures" / f"{Path(place).name}.png", width)
+    redraw(folder, EXAMPLE_PICTURES, ROOT / "config.yaml", folder / "mine.yaml")
+    shrink(folder / f"{EXAMPLE_DRAWN}.png", DOCS / "pictures" / f"{EXAMPLE_DRAWN}.png", WIDTH)
 
 
 def collect_beams(folder):
     """Copy table and picture of a run of the example of test beams."""
     for kind in ("csv", "md"):
         shutil.copyfile(folder / f"prediction.{kind}", DOCS / "tables" / f"{DRAWN_BEAMS}.{kind}")
-    shrink(folder / "prediction.png", DOCS / "pictures" / f"{DRAWN_BEAMS}.png", 700)
+    shrink(folder / "prediction.png", DOCS / "pictures" / f"{DRAWN_BEAMS}.png", WIDTH)
 
 
 def collect_measured(folder):
@@ -316,8 +314,7 @@ def collect_devices(folder):
     for name in DEVICE_TABLES:
         for kind in ("csv", "md"):
             shutil.copyfile(folder / "results" / "tables" / f"{name}.{kind}", DOCS / "tables" / f"{name}.{kind}")
-    for name, width in DEVICE_PICTURES.items():
-        shrink(folder / "results" / "figures" / f"{name}.png", DOCS / "pictures" / f"{name}.png", width)
+    redraw(folder, DEVICE_PICTURES, *configs_of_example("devices"))
 
 
 def collect_sealed(folder):
@@ -354,23 +351,21 @@ def collect_supplement(runs):
     for name, place in SUPPLEMENT.items():
         for kind in ("csv", "md"):
             shutil.copyfile(runs / f"{place}.{kind}", DOCS / "tables" / f"{name}.{kind}")
-    shrink(runs / "supplement" / "supplement.png", DOCS / "pictures" / f"{SUPPLEMENT_PICTURE}.png", 1100)
+    shrink(runs / "supplement" / "supplement.png", DOCS / "pictures" / f"{SUPPLEMENT_PICTURE}.png", WIDTH)
 
 
 def collect_validation(folder):
     """Copy tables and picture of the benchmark."""
     for name, file in VALIDATION.items():
         shutil.copyfile(folder / file, DOCS / "tables" / name)
-    name, width = VALIDATION_PICTURE
-    shrink(folder / f"{name}.png", DOCS / "pictures" / f"{name}.png", width)
+    shrink(folder / f"{VALIDATION_PICTURE}.png", DOCS / "pictures" / f"{VALIDATION_PICTURE}.png", WIDTH)
 
 
 def collect_roughness(folder):
     """Copy table and pictures of a run of the example of roughness."""
     for kind in ("csv", "md"):
         shutil.copyfile(folder / "results" / "tables" / f"{ROUGHNESS}.{kind}", DOCS / "tables" / f"{ROUGHNESS}.{kind}")
-    for name, width in ROUGHNESS_PICTURES.items():
-        shrink(folder / "results" / "figures" / f"{name}.png", DOCS / "pictures" / f"{name}.png", width)
+    redraw(folder, ROUGHNESS_PICTURES, *configs_of_example("roughness"))
 
 
 def collect_process(folder):
@@ -378,8 +373,7 @@ def collect_process(folder):
     results, tables = folder / "results", DOCS / "tables"
     for kind in ("csv", "md"):
         shutil.copyfile(results / "tables" / f"{PROCESS}.{kind}", tables / f"{PROCESS}.{kind}")
-    for name, width in PROCESS_PICTURES.items():
-        shrink(results / "figures" / f"{name}.png", DOCS / "pictures" / f"{name}.png", width)
+    redraw(folder, PROCESS_PICTURES, ROOT / "config.yaml", folder / "mine.yaml")
     (path,) = (results / "process" / "settings").glob("*.nc")
     settings = load(path, "process_settings")
     rows = [
@@ -399,8 +393,7 @@ def collect_test_beams(folder):
         said = {name: of(update, answer) for name, of in TEST_BEAMS_SAID.items()}
         rows += [{"device": path.stem, "name": name, "text": text} for name, text in said.items()]
     pd.DataFrame(rows).to_csv(DOCS / "tables" / f"{TEST_BEAMS}.csv", index=False, lineterminator="\n")
-    picture, width = TEST_BEAMS_PICTURE
-    shrink(folder / "results" / "figures" / f"{picture}.png", DOCS / "pictures" / f"{picture}.png", width)
+    redraw(folder, [TEST_BEAMS_PICTURE], *configs_of_example("test_beams"))
 
 
 def scalars(studies):
@@ -458,15 +451,27 @@ def timing(results):
     }
 
 
+def redraw(folder, names, *configs):
+    """Draw figures of a run in a working folder again, as on a page, for ``docs/pictures``."""
+    with TemporaryDirectory() as drawn:
+        narrow.draw(folder, Path(drawn), names, *configs)
+        for name in names:
+            shrink(Path(drawn) / f"{name}.png", DOCS / "pictures" / f"{name}.png", WIDTH)
+
+
 def shrink(picture, smaller, width):
-    """Copy of a picture in its own colours and at most ``width`` pixels across, small enough for a repository."""
+    """Copy of a picture in its own colours and at most ``width`` pixels across, small enough for a repository.
+
+    The copy tells its resolution, so that the size of its text is known.
+    """
     with Image.open(picture) as image:
+        inches = image.width / image.info["dpi"][0] if "dpi" in image.info else None
         flat = Image.new("RGB", image.size, "white")
         flat.paste(image, mask=image.convert("RGBA").getchannel("A"))
     for scale in (1, 0.85, 0.7, 0.6, 0.5):
         across = min(flat.width, round(scale * width))
         resized = flat.resize((across, round(flat.height * across / flat.width)), Image.Resampling.LANCZOS)
-        resized.save(smaller, optimize=True)
+        resized.save(smaller, optimize=True, **({"dpi": (across / inches,) * 2} if inches else {}))
         if smaller.stat().st_size <= LARGEST:
             return
     raise ValueError(f"{picture} stays above {LARGEST} bytes")

@@ -21,7 +21,7 @@ from stiction.contact.meniscus import film, flooded_energy
 from stiction.plan.graph import Results
 from stiction.plan.plan import Plan
 from stiction.report.format import TO_MJ, TO_UM
-from stiction.report.style import DOUBLE, handles, legend_outside, letter, plain_log, save, styled
+from stiction.report.style import SINGLE, handles, legend_outside, letter, plain_log, save, styled
 from stiction.stages.beams.cantilevers import Cantilevers, cantilever, sections
 from stiction.stages.contact.adhesion_parameter import adhesion_parameters, summits
 from stiction.stages.contact.curves import energies
@@ -34,9 +34,15 @@ SAMPLES = 300
 #: Least energy of the first panel [mJ/m²], and what each panel shows.
 LEAST = 1e-3
 TITLES = (
-    "GW predicts far too little adhesion",
+    "Greenwood and Williamson (GW): far too little adhesion",
     r"Few summits scatter less than $A^{-1/2}$",
     "Surfaces scatter weak adhesion",
+)
+#: What markers and dotted lines are in each panel.
+LINES = (
+    ("this model, non-Gaussian", "GW"),
+    ("simulated", "$A^{-1/2}$, independent summits"),
+    ("scatter by surfaces", "scatter by dimensions"),
 )
 
 
@@ -142,8 +148,8 @@ def shares(config, table):
 @styled
 def drawn(parts):
     """Energies of the baseline, scatter against area, and both sources of scatter."""
-    figure = Figure(figsize=(DOUBLE, 3.1), layout="constrained")
-    axes = figure.subplots(1, 3)
+    figure = Figure(figsize=(SINGLE, 7.6), layout="constrained")
+    axes = figure.subplots(3, 1)
     for k, (pair, rows) in enumerate(parts["greenwood_williamson"].groupby("pair")):
         axes[0].semilogy(rows.RH, rows["ē, GW [mJ/m²]"], f"C{k}:")
         axes[0].semilogy(rows.RH, rows["ē, NG [mJ/m²]"], f"C{k}o-", markersize=3, label=pair)
@@ -157,14 +163,17 @@ def drawn(parts):
     axes[0].set(xlabel="relative humidity [–]", ylabel=r"adhesion energy $\bar e$ [mJ/m²]", ylim=(LEAST, None))
     arrow = {"ha": "center", "va": "bottom", "arrowprops": {"arrowstyle": "->"}}
     axes[0].annotate(r"to $10^{-14}$", (0.85, 1.1 * LEAST), (0.78, 4 * LEAST), **arrow)
-    axes[1].set(xlabel="area of a patch [µm²]", ylabel=r"std / mean of $\bar e$ [–]")
-    axes[2].set(xlabel=r"adhesion, $\Gamma / 2\gamma$ [%]", ylabel=r"std / mean of $\Gamma$ [%]")
+    axes[1].set(xlabel="area of a patch [µm²]", ylabel=r"std / mean of the energy $\bar e$ [–]")
+    axes[2].set(xlabel=r"adhesion energy $\Gamma$, of that of flat wet surfaces $2\gamma$ [%]")
+    axes[2].set(ylabel=r"std / mean of $\Gamma$ [%]")
     for axis in (axes[1].xaxis, axes[1].yaxis, axes[2].yaxis):
         plain_log(axis)
-    pairs, dotted = handles(axes[0]), ("GW", "$A^{-1/2}$", "by dimensions")
+    pairs = handles(axes[0])
     legend_outside(figure, (pairs[0], [f"pair {pair}" for pair in pairs[1]]), "lower", 3)
-    for panel, name in zip(axes, dotted, strict=True):
-        panel.legend(handles=[Line2D([], [], color="0.3", linestyle=":", label=name)], loc="lower left")
+    for panel, names in zip(axes, LINES, strict=True):
+        styles = ({"marker": "o", "markersize": 3}, {"linestyle": ":"})
+        shown = [Line2D([], [], color="0.3", label=name, **style) for name, style in zip(names, styles, strict=True)]
+        panel.legend(handles=shown, loc="lower left")
     letter(axes, TITLES)
     return figure
 

@@ -4,6 +4,7 @@ import importlib
 import importlib.util
 import json
 import re
+import shutil
 import subprocess
 import sys
 from dataclasses import replace
@@ -16,14 +17,18 @@ import pytest
 import xarray as xr
 import yaml
 from configurations import module
+from matplotlib import rc_params_from_file
 from PIL import Image
 
 import stiction
 from stiction.answer.data import Cause
 from stiction.config.relations import schema
-from stiction.plan.graph import stages
+from stiction.plan.graph import Graph, stages
+from stiction.plan.plan import Plan
 from stiction.report.checks import RESOLVED
+from stiction.report.style import DOUBLE, SINGLE, STYLE, panels, save
 from stiction.run import storage
+from stiction.run.atomic import DataError
 from stiction.stages.devices import prediction
 from stiction.surface.feasible import nearest_feasible
 
@@ -31,6 +36,8 @@ ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
 PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", ROOT / "CONTRIBUTING.md", *sorted(DOCS.glob("*.md"))]
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
+#: Least height of text of a picture on a phone [pixels].
+READABLE = 10
 #: Brackets and # in code are not links or headings.
 CODE = re.compile(r"^```.*?^```|`[^`\n]*`", re.MULTILINE | re.DOTALL)
 
@@ -95,41 +102,48 @@ def test_folders_without_a_finished_run_of_the_example_change_nothing(tmp_path):
     assert "no finished run" in update.unfinished_example(tmp_path)
 
 
-def test_tables_and_pictures_of_the_example_are_copied(tmp_path, monkeypatch):
+def drawn(_folder, into, names, *configs):
+    """Pictures in place of those of a run whose configuration files exist."""
+    assert all(path.exists() for path in configs)
+    for name in names:
+        Image.new("RGB", (20, 10)).save(into / f"{name}.png")
+
+
+@pytest.fixture
+def made(tmp_path, monkeypatch):
+    """Names of the files that are copied into folders of tables and pictures, empty at first."""
     monkeypatch.setattr(update, "DOCS", tmp_path / "docs")
+    monkeypatch.setattr(update.narrow, "draw", drawn)
+    (tmp_path / "mine.yaml").touch()
     for part in ("tables", "pictures"):
         (tmp_path / "docs" / part).mkdir(parents=True)
-    for place in (*update.EXAMPLE_TABLES.values(), *update.EXAMPLE_PICTURES):
+    return lambda: {path.name for path in (tmp_path / "docs").rglob("*.*")}
+
+
+def test_tables_and_pictures_of_the_example_are_copied(tmp_path, made):
+    for place in (*update.EXAMPLE_TABLES.values(), update.EXAMPLE_DRAWN):
         (tmp_path / place).parent.mkdir(parents=True, exist_ok=True)
         for kind in ("csv", "md"):
             (tmp_path / f"{place}.{kind}").write_text(f"{place} {kind}")
-        Image.new("RGB", (20, 10)).save(tmp_path / f"{place}.png")
+    Image.new("RGB", (20, 10)).save(tmp_path / f"{update.EXAMPLE_DRAWN}.png")
     update.collect_example(tmp_path)
-    made = {path.name for path in (tmp_path / "docs").rglob("*.*")}
     pictures = {"surface_sheet_Etched.png", "prediction.png"}
-    assert made == {path.name for path in (DOCS / "tables").glob("example_*")} | pictures
+    assert made() == {path.name for path in (DOCS / "tables").glob("example_*")} | pictures
     assert (tmp_path / "docs" / "tables" / "example_scans.md").read_text() == "results/tables/scans md"
 
 
-def test_table_and_picture_of_the_drawn_test_beams_are_copied(tmp_path, monkeypatch):
+def test_table_and_picture_of_the_drawn_test_beams_are_copied(tmp_path, made):
     assert "no finished run" in update.unfinished_example(tmp_path, target="devices")
-    monkeypatch.setattr(update, "DOCS", tmp_path / "docs")
-    for part in ("tables", "pictures"):
-        (tmp_path / "docs" / part).mkdir(parents=True)
     for kind in ("csv", "md"):
         (tmp_path / f"prediction.{kind}").write_text(kind)
     Image.new("RGB", (20, 10)).save(tmp_path / "prediction.png")
     update.collect_beams(tmp_path)
-    made = {path.name for path in (tmp_path / "docs").rglob("*.*")}
-    assert made == {"drawn_beams.csv", "drawn_beams.md", "drawn_beams.png"}
+    assert made() == {"drawn_beams.csv", "drawn_beams.md", "drawn_beams.png"}
 
 
-def test_tables_and_picture_of_the_supplement_are_copied(tmp_path, monkeypatch):
+def test_tables_and_picture_of_the_supplement_are_copied(tmp_path, made):
     runs = tmp_path / "runs"
     assert "supplement/sizes" in update.unfinished_supplement(runs)
-    monkeypatch.setattr(update, "DOCS", tmp_path / "docs")
-    for part in ("tables", "pictures"):
-        (tmp_path / "docs" / part).mkdir(parents=True)
     for place in update.SUPPLEMENT.values():
         (runs / place).parent.mkdir(parents=True, exist_ok=True)
         for kind in ("csv", "md"):
@@ -137,29 +151,25 @@ def test_tables_and_picture_of_the_supplement_are_copied(tmp_path, monkeypatch):
     Image.new("RGB", (20, 10)).save(runs / "supplement" / "supplement.png")
     assert not update.unfinished_supplement(runs)
     update.collect_supplement(runs)
-    made = {path.name for path in (tmp_path / "docs").rglob("*.*")}
     tables = {f"{name}.{kind}" for name in update.SUPPLEMENT for kind in ("csv", "md")}
-    assert made == tables | {"supplement.png"}
-    assert made <= {path.name for folder in ("tables", "pictures") for path in (DOCS / folder).iterdir()}
+    assert made() == tables | {"supplement.png"}
+    assert made() <= {path.name for folder in ("tables", "pictures") for path in (DOCS / folder).iterdir()}
 
 
-def test_tables_and_picture_of_the_benchmark_are_copied(tmp_path, monkeypatch):
+def test_tables_and_picture_of_the_benchmark_are_copied(tmp_path, made):
     assert "no finished run" in update.unfinished_validation(tmp_path)
-    monkeypatch.setattr(update, "DOCS", tmp_path / "docs")
-    for part in ("tables", "pictures"):
-        (tmp_path / "docs" / part).mkdir(parents=True)
     for file in update.VALIDATION.values():
         (tmp_path / file).write_text(file)
     Image.new("RGB", (20, 10)).save(tmp_path / "validation.png")
     assert not update.unfinished_validation(tmp_path)
     update.collect_validation(tmp_path)
-    made = {path.name for path in (tmp_path / "docs").rglob("*.*")}
-    assert made == {*update.VALIDATION, "validation.png"}
-    assert made <= {path.name for folder in ("tables", "pictures") for path in (DOCS / folder).iterdir()}
+    assert made() == {*update.VALIDATION, "validation.png"}
+    assert made() <= {path.name for folder in ("tables", "pictures") for path in (DOCS / folder).iterdir()}
 
 
 def test_sentences_of_the_pages_with_test_beams_and_one_picture_are_copied(tmp_path, monkeypatch):
-    folder, picture = tmp_path / "run", f"{update.TEST_BEAMS_PICTURE[0]}.png"
+    folder, picture = tmp_path / "run", f"{update.TEST_BEAMS_PICTURE}.png"
+    monkeypatch.setattr(update.narrow, "draw", drawn)
     assert "no finished run" in update.unfinished_devices("test_beams", update.TEST_BEAMS, folder)
     monkeypatch.setattr(update, "DOCS", tmp_path / "docs")
     said = {name: lambda found, _, name=name: f"{name}: {float(found.linear)}" for name in update.TEST_BEAMS_SAID}
@@ -173,7 +183,6 @@ def test_sentences_of_the_pages_with_test_beams_and_one_picture_are_copied(tmp_p
         storage.save(xr.Dataset({"linear": factor}), path, "test_beams_rerun", {})
         of_answer = folder / "results" / "devices" / "answer" / path.name
         storage.save(xr.Dataset({"share": 1e-3}), of_answer, "answer", {})
-    Image.new("RGB", (20, 10)).save(folder / "results" / "figures" / picture)
     update.collect_test_beams(folder)
     assert {path.name for path in (tmp_path / "docs").rglob("*.*")} == {"test_beams.csv", picture}
     found, kept = (quoted.frame(docs / "tables" / "test_beams.csv") for docs in (tmp_path / "docs", DOCS))
@@ -318,6 +327,56 @@ def test_pictures_are_small_in_full_colours_and_all_shown():
     for path in (path for path in pictures if path.suffix == ".png"):
         with Image.open(path) as picture:
             assert picture.mode == "RGB", f"{path.name} has a palette"
+
+
+def test_figures_are_drawn_from_tables_and_datasets_of_a_run_as_wide_as_a_column(tmp_path):
+    plan, heights = Plan(stiction.load()), np.linspace(-3, 3, 7)
+    (tmp_path / "results" / "tables").mkdir(parents=True)
+    shutil.copyfile(DOCS / "tables" / "table_3.csv", tmp_path / "results" / "tables" / "table_3.csv")
+    for name in plan.surfaces:
+        density = ("height", np.exp(-(heights**2) / 2) / np.sqrt(2 * np.pi))
+        found = xr.Dataset({"density": density, "rms": 3e-9}, {"height": heights})
+        (tmp_path / "results" / "heights").mkdir(exist_ok=True)
+        storage.save(found, tmp_path / "results" / "heights" / f"{name}.nc", "heights", {})
+    for name, panels_drawn in (("intervals", 3), ("figure_07", 2 * len(plan.surfaces))):
+        job = Graph(plan).job(f"figures/{name}.png")
+        figure = update.narrow.figure_of(tmp_path, job)
+        assert len(figure.axes) == panels_drawn
+        assert figure.get_figwidth() == SINGLE
+    update.narrow.draw(tmp_path, tmp_path, ["intervals"], ROOT / "config.yaml")
+    assert pixels_of_text(tmp_path / "intervals.png") >= READABLE
+    with pytest.raises(DataError, match=r"heights/\w+.nc"):
+        update.narrow.figure_of(tmp_path / "results", job)
+
+
+def pixels_of_text(path):
+    """Height of the smallest text of a figure where it is shown as wide as a phone [pixels]."""
+    smallest = min(settings_of_style()[name] for name in ("xtick.labelsize", "ytick.labelsize", "legend.fontsize"))
+    with Image.open(path) as picture:
+        return smallest / 72 * 390 * picture.info["dpi"][0] / picture.width
+
+
+def settings_of_style():
+    """Settings of the style of all figures."""
+    return rc_params_from_file(STYLE, use_default_template=False)
+
+
+def test_text_of_all_pictures_can_be_read_on_a_phone(tmp_path):
+    small = {path.name: round(pixels_of_text(path), 1) for path in (DOCS / "pictures").glob("*.png")}
+    assert min(small.values()) >= READABLE, {name: size for name, size in small.items() if size < READABLE}
+    for width, is_readable in ((SINGLE, True), (DOUBLE, False)):
+        figure, _ = panels(1, 1, (width, 2))
+        save(figure, tmp_path / "drawn.png")
+        update.shrink(tmp_path / "drawn.png", tmp_path / "small.png", 300)
+        assert (pixels_of_text(tmp_path / "small.png") >= READABLE) == is_readable
+
+
+def test_no_text_of_a_figure_is_smaller_than_the_smallest_of_the_style():
+    smaller = re.compile(r"(?:fontsize|labelsize)\"?[=:] ?[1-6]\b")
+    places = [*(ROOT / "src" / "stiction" / "report").rglob("*.py"), *(ROOT / "examples").rglob("*.py")]
+    assert smaller.search('panel.text(0, 0, "", fontsize=6)'), "a control"
+    assert smaller.search('{"fontsize": 6}')
+    assert not [path.name for path in places if smaller.search(path.read_text(encoding="utf-8"))]
 
 
 def links(page):

@@ -1,27 +1,14 @@
 """Scripts of the examples that compare the paper's statements and its printed table with this tool."""
 
-import importlib.util
-from pathlib import Path
-
 import numpy as np
 import pandas as pd
 import pytest
+from configurations import ROOT, module
 from numpy.testing import assert_allclose
 
 import stiction
 from stiction.config.merging import merged
 from stiction.plan.plan import Plan
-
-ROOT = Path(__file__).parents[1]
-
-
-def module(path):
-    """Import a script."""
-    spec = importlib.util.spec_from_file_location(path.stem, path)
-    loaded = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(loaded)
-    return loaded
-
 
 supplement, compare_print = (module(ROOT / "examples" / f"{name}.py") for name in ("supplement", "compare_print"))
 CONFIG = stiction.load()

@@ -1,16 +1,10 @@
 """Files of scans, written by the library that reads them, and configurations that use them."""
 
-import warnings
-
 import numpy as np
-import pytest
 from drawn_scans import published
+from topographies import SurfaceTopography
 
 from stiction.config.merging import merged
-
-with warnings.catch_warnings():
-    warnings.simplefilter("ignore", ImportWarning)  # of NuMPI, without mpi4py
-    SurfaceTopography = pytest.importorskip("SurfaceTopography")
 
 #: Side of the scans of B2, 9.5 wavelengths of its corner [m].
 SIDE = 5e-6

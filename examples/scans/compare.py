@@ -69,8 +69,8 @@ def drawn(cracks):
     """Crack lengths over the humidity, and their differences from those of the true surfaces."""
     figure, ((lengths,), (differences,)) = panels(2, 1, (SINGLE, 3.8), sharex=True, height_ratios=[2, 1])
     error = np.hypot(cracks.scans_se_um, cracks.simulation_se_um)
-    scans = {"marker": "o", "linestyle": "", "label": "from scans"}
-    lengths.plot(cracks.relative_humidity, cracks.true_um, color="black", marker="s", label="true surfaces")
+    scans = {"marker": "o", "linestyle": "", "label": "from scans, ± standard error"}
+    lengths.plot(cracks.relative_humidity, cracks.true_um, color="black", marker="s", label="of the true surfaces")
     lengths.errorbar(cracks.relative_humidity, cracks.predicted_um, error, **scans)
     lengths.set(ylabel="crack length $l_s$ [µm]")
     lengths.legend()

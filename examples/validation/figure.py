@@ -16,7 +16,7 @@ INSIDE, OUTSIDE = ("#0072B2", "o"), ("#D55E00", "D")
 #: Width, of which a phone shows 7 points as 10 pixels, and height of a line of a name, of a bar and of an axis [in].
 WIDTH, LINE, BAR_HEIGHT, AROUND = 3.6, 0.1, 0.11, 0.55
 #: Most characters of a line of a name.
-NAME = 68
+NAME = 74
 #: Ratio of the ends of an axis below which it has plain numbers.
 DECADE = 10
 #: Start of the names of experiments on crack lengths.

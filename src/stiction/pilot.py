@@ -374,7 +374,7 @@ class Samples:
 
     def at(self, humidity: float, law: bool, preliminary: bool) -> dict[str, Any]:
         """Findings of the samples at a humidity, see `shown_by`."""
-        entries = [self._entry(name) for name in self.plan.sides(self.patch.pair)]
+        entries = [self.plan.config["surfaces"][name] for name in self.plan.sides(self.patch.pair)]
         air = self.plan.air_of_devices if self.of_devices else self.plan.air
         water = air.water(self.patch.pair)
         settings = [self.patch, self.model, entries, self.plan.config["character"], self._settings]
@@ -382,9 +382,6 @@ class Samples:
             [*self.code, *settings, water, humidity, law, preliminary],
             lambda: shown_by(force_curves(*self._contact, humidity, in_si(Water, water)), law, preliminary),
         )
-
-    def _entry(self, name):
-        return self.plan.config["surfaces"][name]
 
     @cached_property
     def _settings(self):

@@ -98,6 +98,15 @@ def test_a_setting_off_the_law_of_the_others_is_named_and_no_other():
     assert process_law.contradictions(law_of(column, 0.01, settings)) == [(4, 0)]
 
 
+def test_three_settings_check_a_straight_line_but_do_not_tell_which_of_them_is_wrong():
+    law = law_of([0.0, 0.7, 2.0], 0.05, np.array([30.0, 60.0, 90.0]))
+    assert list(law.degrees) == [1]
+    # The middle one is 0.3 off the line of the others, with an error of 0.05 √(3 / 2); the first of equals is named.
+    assert np.abs(law.surprise) == pytest.approx(0.3 / (0.05 * 1.5**0.5))
+    assert process_law.contradictions(law) == [(0, 0)]
+    assert not process_law.is_unique(law, 0)
+
+
 @pytest.mark.usefixtures("without_scatter")
 def test_drawn_laws_have_the_covariance_of_the_law_and_errors_of_quantities_stay_correlated(monkeypatch):
     monkeypatch.setattr(process_law, "LARGEST_DEGREE", 1)  # quantities of different degrees are less correlated

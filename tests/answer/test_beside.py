@@ -11,6 +11,7 @@ from numpy.testing import assert_equal
 from stiction.answer.data import Answer, Between, Stay, Unasked, Verdict
 from stiction.report.answer import screen, tables, words
 from stiction.report.devices import explorer
+from stiction.report.format import safe_size
 from stiction.stages.answer import beside
 from stiction.stages.answer.answer import answer_of, layout
 from stiction.stages.life.answers import LifeRow, Name
@@ -42,8 +43,10 @@ def test_the_headline_of_a_stopper_names_a_larger_force_between_its_airs_as_its_
     forces, airs = grid.safe[:, grid.share.values.index(answer.share)], np.array(grid.axes[0].values)
     inside = (airs > 0.44) & (airs < 0.67)
     assert 1e6 * answer.between.size == pytest.approx(forces[inside].max())
-    beside_it = f"{answer.in_words(answer.between.size)} between these airs (RH 0.55)"
-    assert screen.headline(answer).startswith(f"At least {answer.in_words(answer.build)}, but {beside_it}; with your ")
+    beside_it = f"{safe_size(answer.between.size, answer.sought)} between these airs (interpolated: state RH 0.55)"
+    assert screen.headline(answer).startswith(
+        f"At least {safe_size(answer.build, answer.sought)}, but {beside_it}; with your "
+    )
     row = tables.devices({"S1": answer}).frame.iloc[0]
     assert row["stricter"] == beside_it
     assert row["between"] == pytest.approx(1e6 * answer.between.size)
@@ -60,8 +63,13 @@ def test_no_force_is_named_of_airs_that_are_not_between_the_stated_ones(at):
 
 def test_a_force_that_suffices_in_the_stated_airs_alone_is_not_called_safe():
     needed = stopper_answer(peaked(0.55))
-    for force, tone, change in ((needed.build, "open", "A restoring"), (needed.between.size, "good", "Nothing.")):
-        answer = replace(needed, size=1.001 * force, stuck=replace(needed.stuck, low=0.0))
+    assert needed.between.safe > needed.between.size, "inputs count for more in the drier air"
+    for force, tone, change in (
+        (needed.build, "open", "A restoring"),
+        (needed.between.size, "open", "A restoring"),
+        (needed.between.safe, "good", "Nothing."),
+    ):
+        answer = replace(needed, size=force, stuck=replace(needed.stuck, low=0.0))
         assert answer.verdict is Verdict.SAFE
         assert words.sign_of(answer)[0] == tone
         assert screen.change(answer, STOPPER).startswith(change)
@@ -78,7 +86,7 @@ def test_the_headline_of_a_beam_names_a_shorter_length_of_its_chart_between_its_
     lengths = {rh: safe(kind, longest=longest_of_air) for rh, longest_of_air in ((0.44, 6e-4), (0.67, 5e-4))}
     answer = beam_answer(section, lengths, charts={0.5: chart(kind, longest, thickness)})
     assert bool(answer.between) == is_named
-    assert (" µm between these airs (RH 0.5)" in screen.headline(answer)) == is_named
+    assert (" µm between these airs (interpolated: state RH 0.5)" in screen.headline(answer)) == is_named
     if is_named:  # by factors of about one: all inputs count as exact
         limit = float(safe(kind, longest).isel(shape=-1).safe_length.sel(share=answer.share))
         assert answer.between.size == pytest.approx(limit, rel=1e-2)
@@ -86,7 +94,7 @@ def test_the_headline_of_a_beam_names_a_shorter_length_of_its_chart_between_its_
 
 def test_a_headline_names_what_nothing_stated_asks_for_if_it_is_stricter():
     answer = replace(beam_answer(CANTILEVER, LENGTHS), unasked=())
-    build = answer.in_words(answer.build)
+    build = safe_size(answer.build, answer.sought)
     assert screen.headline(answer) == f"No longer than {build}."
     limits = [(Name.FAST, "", 1e-4), (f"{Name.COLLAPSE}_water", "", 1.2e-4), ("other", "held length: more", 1.3e-4)]
     stricter = replace(answer, unasked=tuple(Unasked(*limit) for limit in limits))
@@ -98,7 +106,7 @@ def test_a_headline_names_what_nothing_stated_asks_for_if_it_is_stricter():
 
 def test_stricter_sizes_come_back_from_the_dataset_of_an_answer():
     answer = replace(
-        beam_answer(CANTILEVER, LENGTHS), between=Between(0.5, 1e-4), unasked=(Unasked("fast", "what", 9e-5),)
+        beam_answer(CANTILEVER, LENGTHS), between=Between(0.5, 1e-4, 9e-5), unasked=(Unasked("fast", "what", 9e-5),)
     )
     again = answer_of(layout(answer))
     assert (again.between, again.unasked) == (answer.between, answer.unasked)

@@ -172,11 +172,13 @@ def draw(measured, path):
     """Seconds and memory over size, each relative to the smallest, on logarithmic axes."""
     from stiction.report.style import (  # noqa: PLC0415
         DOUBLE,
+        SINGLE,
         dashes,
         handles,
         legend_outside,
         letter,
         marker,
+        on_a_page,
         panels,
         plain_log,
         styled,
@@ -204,7 +206,8 @@ def draw(measured, path):
         legend_outside(drawn, handles(left), "lower", 2)
         return drawn
 
-    figure().savefig(path, dpi=200)
+    with on_a_page(SINGLE):  # text that a phone shows
+        figure().savefig(path)
 
 
 def main():
@@ -212,11 +215,11 @@ def main():
     measured = list(rows())
     print("\n" + table(measured, gains()))  # noqa: T201
     if len(sys.argv) > 1:
-        from update import shrink  # noqa: PLC0415
+        from update import WIDTH, shrink  # noqa: PLC0415
 
         with tempfile.TemporaryDirectory() as folder:
             draw(measured, Path(folder) / "scaling.png")
-            shrink(Path(folder) / "scaling.png", Path(sys.argv[1]), 1100)
+            shrink(Path(folder) / "scaling.png", Path(sys.argv[1]), WIDTH)
 
 
 if __name__ == "__main__":

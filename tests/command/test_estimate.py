@@ -113,7 +113,6 @@ def test_more_touchdowns_need_shorter_beams_and_a_stated_length_has_a_probabilit
         ("gap_um: 20, humidities: [0.6]}\n", "gap_um: 20, voltage_V: 5, humidities: [0.6]}\n", "dielectric"),
         ("gap_um: 20, humidities: [0.6]}\n", "gap_um: 20, strip_um: 1, humidities: [0.6]}\n", "strip_um"),
         ("humidities: [0.6]}\n", "humidities: [0.999]}\n", "beyond what was learnt"),
-        ("humidities: [0.6]}\n", "humidities: [dry]}\n", "dry"),
         ("rms_nm: 3", "rms_nm: 60", "beyond what was learnt"),
         ("rms_nm: 3", "rms_nm: three", "stiction check says what is wrong"),
         ("thickness_um: 2.6, ", "", "thickness_um"),
@@ -229,8 +228,8 @@ def test_large_sizes_have_no_exponent(capsys):
 @pytest.mark.parametrize(
     ("words", "reason"),
     [
-        (["--rh", "45"], "--rh must be above 0 and below 1, got 45.0"),
-        (["--rh", "0.5", "nan"], "--rh must be above 0 and below 1, got nan"),
+        (["--rh", "45"], "--rh must be dry, or above 0 and below 1, got 45.0"),
+        (["--rh", "0.5", "nan"], "--rh must be dry, or above 0 and below 1, got nan"),
         (["--rms=-3"], "--rms must be above 0, got -3.0"),
         (["--gap=0"], "--gap must be above 0, got 0.0"),
         (["--touchdowns=0"], "--touchdowns must be above 0, got 0"),
@@ -253,7 +252,7 @@ def test_a_word_for_a_number_has_two_lines(capsys, word):
         estimate.main([*OPTIONS, "--rh", word])
     usage, error = capsys.readouterr().err.splitlines()
     assert usage == "usage: stiction estimate FILE ... | OPTIONS (-h lists them)"
-    assert error.endswith(f"argument --rh: must be numbers above 0 and below 1, got {word}")
+    assert error.endswith(f"argument --rh: must be dry, or numbers above 0 and below 1, got {word}")
 
 
 def test_a_dielectric_in_metres_has_no_length(capsys):
@@ -262,13 +261,18 @@ def test_a_dielectric_in_metres_has_no_length(capsys):
     assert said(capsys, *OPTIONS, "--voltage=5", "--dielectric", "100", "3.9")[0] == 0
 
 
-@pytest.mark.parametrize("air", [["0"], ["dry"], ["0.5", "0"]])
-def test_dry_air_is_named(capsys, air):
-    status, lines = said(capsys, *OPTIONS, "--rh", *air)
-    assert (status, lines[0]) == (
-        2,
-        "The device is not known at once: dry air was not learnt. Run: stiction devices mine.yaml",
-    )
+@pytest.mark.parametrize("options", [OPTIONS, OF_STOPPER])
+def test_dry_air_is_a_word_or_zero_and_stands_in_the_printed_file(tmp_path, capsys, options):
+    (status, of_word), (_, of_zero) = (said(capsys, *options, "--rh", word) for word in ("dry", "0"))
+    assert (status, of_word) == (0, of_zero)
+    assert "estimate in dry air, the worst air" in of_word[0]
+    assert lengths(of_word) != lengths(said(capsys, *options)[1])
+    lines = of_word[of_word.index("run: {pairs: [mine], studies: []}") :]
+    assert all("humidities: [dry]" in line for line in lines if "humidities" in line)
+    (tmp_path / "mine.yaml").write_text("\n".join(lines))
+    assert main(["check", str(tmp_path / "mine.yaml"), "-d", str(tmp_path)]) == 0
+    capsys.readouterr()
+    assert lengths(said(capsys, str(tmp_path / "mine.yaml"))[1]) == lengths(of_word)
 
 
 @pytest.mark.parametrize(
@@ -292,7 +296,7 @@ def test_what_is_beyond_has_its_side_and_its_inputs(capsys, words, start):
     ("old", "new", "reason"),
     [
         ("gap_um: 20, humidities: [0.6]}\n", "gap_um: 0, humidities: [0.6]}\n", "gap_um must be above 0, got 0"),
-        ("humidities: [0.6]}\n", "humidities: [60]}\n", "humidities must be above 0 and below 1, got 60"),
+        ("humidities: [0.6]}\n", "humidities: [60]}\n", "humidities must be dry, or above 0 and below 1, got 60"),
         ("rms_nm: 3", "rms_nm: -3", "rms_nm must be above 0, got -3"),
     ],
 )

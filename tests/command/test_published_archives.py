@@ -5,7 +5,6 @@ import os
 import random
 import shutil
 import time
-import warnings
 from pathlib import Path
 from zipfile import ZIP_DEFLATED, ZipFile
 
@@ -14,6 +13,7 @@ import pytest
 import yaml
 from hostile import places
 from server import OK, page, server
+from topographies import SurfaceTopography
 
 from stiction.command import container, main, published
 from stiction.command.last_lines import FAULT, Status
@@ -22,10 +22,6 @@ from stiction.config.messages import schema_problems
 from stiction.config.relations import schema
 from stiction.scans import published as containers
 from stiction.scans.reading import read
-
-with warnings.catch_warnings():
-    warnings.simplefilter("ignore", ImportWarning)  # of NuMPI, without mpi4py
-    SurfaceTopography = pytest.importorskip("SurfaceTopography")
 
 #: What a place in metadata can hold instead of what it should.
 ODD = [None, 5, -1.0, True, "", "x" * 3000, "a\nb: [", "\x1b[31m\x00", [], {}, ["a"], {"name": 1}, [[[]]], "2020-01-01"]

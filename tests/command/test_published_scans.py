@@ -1,6 +1,5 @@
 """Containers written by SurfaceTopography, unpacked into scans: every map, its undefined points, no profile."""
 
-import warnings
 from pathlib import Path
 from zipfile import ZipFile
 
@@ -8,6 +7,7 @@ import numpy as np
 import pytest
 import yaml
 from server import OK, page, server
+from topographies import SurfaceTopography
 
 from stiction.command import main, published
 from stiction.command.last_lines import Status
@@ -18,10 +18,6 @@ from stiction.config.relations import schema
 from stiction.scans.published import unpack
 from stiction.scans.reading import read
 from stiction.streams import stream
-
-with warnings.catch_warnings():
-    warnings.simplefilter("ignore", ImportWarning)  # of NuMPI, without mpi4py
-    SurfaceTopography = pytest.importorskip("SurfaceTopography")
 
 #: Heights [µm] of a map of 6 x 4 µm, one of them undefined.
 HEIGHTS = np.ma.masked_array(3e-3 * stream(1, "published").standard_normal((60, 40)), mask=False)

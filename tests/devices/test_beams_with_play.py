@@ -5,19 +5,15 @@ from functools import partial
 
 import numpy as np
 import pytest
-import yaml
-from configurations import ROOT
 from hypothesis import given
 from hypothesis import strategies as st
+from plans import plan_of_copy
 
-from stiction.config.files import load
-from stiction.config.merging import merged
 from stiction.config.units import in_si
 from stiction.contact import forcelaw
 from stiction.contact.environment import Water
 from stiction.devices.strips import FEWEST, NEAREST, of_one_body, resampled
 from stiction.plan.graph import Graph, Results
-from stiction.plan.plan import Plan
 from stiction.plan.stage import select
 from stiction.stages.contact import contact, curves, pairs
 from stiction.stages.devices import opening
@@ -55,15 +51,8 @@ def test_beams_meet_all_displacements_and_err_towards_the_register():
 
 
 def plan_of(**replica):
-    """Plan of the example of a copy at a coherence of 0.9, with few samples."""
-    example = yaml.safe_load((ROOT / "examples" / "replica.yaml").read_text(encoding="utf-8"))
-    small = {
-        "contact": {"samples": SAMPLES, "chunks": 3, "distance_step_nm": 0.2, "model": "summits"},
-        "chaos": {"order": 2},
-        "design": {"beams": 600, "shares": [0.05]},
-        "pairs": {"copied": {"replica": {"coherence": 0.9} | replica}},
-    }
-    return Plan(load({key: value for key, value in merged(example, small).items() if key != "compare"}))
+    """Plan of the example of a copy at a coherence of 0.9."""
+    return plan_of_copy({"samples": SAMPLES, "chunks": 3}, 600, {"coherence": 0.9} | replica)
 
 
 @pytest.fixture(scope="module")

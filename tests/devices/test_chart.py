@@ -143,6 +143,12 @@ def test_ratios_of_sizes_between_humidities_err_by_less_than_stated_and_than_tho
     assert_allclose([chart.parabola(nodes, ratio * power(nodes), at)[0] for at in nodes], ratio * power(nodes))
 
 
+def test_a_line_has_no_error_wherever_its_middle_is():
+    nodes = np.array([0.44, 0.5, 0.95])
+    found, error = chart.parabola(nodes, 2 - 3 * nodes, 0.6)
+    assert (found, error) == (pytest.approx(0.2), pytest.approx(0, abs=1e-12))
+
+
 def test_a_jump_of_the_ratios_is_stated_and_what_is_not_known_remains_so():
     ratios = np.array([[0.0, 0.3, np.nan], [0.0, 0.3, 0.2], [0.0, 0.5, 0.2]])
     found, errors = chart.parabola(AXIS[[0, 4, 8]], ratios, 0.6)

@@ -1,19 +1,13 @@
 """P(stuck) with play beside 2000 beams on surfaces of another generator and with another search for cracks."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
-import yaml
-from configurations import ROOT
 from own_replicas import SPACING, STRIP, Meeting, crack_lengths, strips
+from plans import plan_of_copy
 
-from stiction.config.files import load
-from stiction.config.merging import merged
 from stiction.config.units import in_si
 from stiction.contact.environment import Water
 from stiction.plan.graph import Graph, Results
-from stiction.plan.plan import Plan
 from stiction.plan.stage import select
 from stiction.stages.contact import contact, curves, pairs
 from stiction.stages.devices import opening
@@ -26,18 +20,6 @@ COHERENCE, PLAY, OFFSETS, BEAMS = 0.8, 35, 36, 2000
 #: Shares at which lengths and P(stuck) are compared. ASSUME: 6 % of a length, and 0.06 of a share, for the crack tip
 #: and the sampling: either half of the offsets moves lengths by up to 5 %.
 SHARES, ALLOWED = (0.05, 0.1, 0.2, 0.5), 0.06
-
-
-def plan_of(**replica):
-    """Plan of the example of a copy at a coherence, with few samples."""
-    example = yaml.safe_load(Path(ROOT / "examples" / "replica.yaml").read_text(encoding="utf-8"))
-    small = {
-        "contact": {"samples": 400, "chunks": 1, "distance_step_nm": 0.2, "model": "summits"},
-        "chaos": {"order": 2},
-        "design": {"beams": BEAMS, "shares": [0.05]},
-        "pairs": {"copied": {"replica": {"coherence": COHERENCE} | replica}},
-    }
-    return Plan(load({key: value for key, value in merged(example, small).items() if key != "compare"}))
 
 
 def computed(plan):
@@ -80,7 +62,7 @@ def energies_at_offsets(plan):
 
 @pytest.mark.slow
 def test_2000_beams_on_other_surfaces_stick_as_computed():
-    plan = plan_of(play_nm=PLAY)
+    plan = plan_of_copy({"samples": 400, "chunks": 1}, BEAMS, {"coherence": COHERENCE, "play_nm": PLAY})
     device, (body, alone), of_tip = computed(plan)
     energies, rng = energies_at_offsets(plan)
     number = int(1.2e-3 / (STRIP[0] * SPACING))

@@ -5,8 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 from own_replicas import SPACING, Meeting, strips
-from plans import surface_datasets
-from test_play_held_out import plan_of
+from plans import plan_of_copy, surface_datasets
 
 from stiction.config.units import in_si
 from stiction.contact.environment import Water
@@ -23,7 +22,7 @@ ALONG, ACROSS = 150, 1000
 @cache
 def touchdowns(play):
     """Mean energies of beams at offsets with a play [nm] (beams, touchdowns) [J/m²]."""
-    plan = plan_of(coherence=COHERENCE)
+    plan = plan_of_copy({"samples": 400, "chunks": 1}, BEAMS, {"coherence": COHERENCE})
     settings = in_si(
         pairs.Settings,
         select(pairs.Settings, plan.seen_by("copied", samples=1) | {"beam": {"width_um": 1e6 * ACROSS * SPACING}}),

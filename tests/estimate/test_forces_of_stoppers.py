@@ -154,7 +154,6 @@ def test_a_spring_has_the_force_of_its_gap():
         ({"restoring_force_uN": 0}, "restoring_force_uN must be above 0, got 0"),
         ({"tilt_deg": [0.1]}, "tilt_deg"),
         ({"voltage_V": 3}, "voltage_V"),
-        ({"humidities": [0.0]}, "dry"),
         ({"humidities": [0.999]}, "beyond what was learnt"),
         ({"kind": "probe", "radius_um": 5}, "only cantilevers and stoppers"),
     ],

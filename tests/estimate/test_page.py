@@ -47,8 +47,9 @@ def drawn(rng, of_kind):
     ]
     substrate = beams[0] | {"rms_nm": 0.2, "corner_rad_per_um": 10.0}
     airs, often = rng.uniform(0.4, 0.92, rng.choice([1, 2])).tolist(), int(rng.choice([1, 1000]))
+    airs = [*airs[1:], 0.0] if rng.random() < 0.4 else airs
     asked = {"beams": beams, "substrate": substrate, "humidities": airs, "averaged": bool(rng.random() < 0.5)}
-    return asked | {"touchdowns": often} | of_kind(rng)
+    return asked | {"touchdowns": often, "constant": rng.uniform(1e-19, 3.5e-19)} | of_kind(rng)
 
 
 def cantilever(rng):

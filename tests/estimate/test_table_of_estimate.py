@@ -5,8 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from stiction.estimate import dry as of_dry_air
 from stiction.estimate.answer import CONFIDENCES
-from stiction.estimate.learning import training
+from stiction.estimate.learning import dry, dry_patches, training
 from stiction.estimate.learning.design import FILMS, SurfaceLaw, points, states
 from stiction.estimate.learning.make import control_of_forces, control_of_patches, control_of_slopes
 from stiction.estimate.page import page
@@ -26,6 +27,13 @@ def test_tips_and_patches_are_still_those_that_were_learnt():
     np.testing.assert_allclose(pressures, content()["control"]["patches"], rtol=1e-4, err_msg=AGAIN)
 
 
+def test_contacts_in_dry_air_are_still_those_that_were_learnt():
+    with without_progress():
+        found = dry.control() | dry_patches.control()
+    for name, values in content()["dry"]["control"].items():
+        np.testing.assert_allclose(found[name], values, rtol=1e-3, err_msg=AGAIN)
+
+
 @pytest.mark.slow
 def test_full_contact_is_still_the_one_that_was_learnt():
     with without_progress():
@@ -43,7 +51,10 @@ def test_the_table_has_what_the_estimate_reads():
     stoppers = content()["stoppers"]
     assert list(COORDINATES) == content()["coordinates"]
     assert list(OF_PATCHES) == stoppers["coordinates"]
-    for part in (content(), stoppers):
+    in_dry_air = content()["dry"]
+    assert list(of_dry_air.OF_TIPS) == in_dry_air["coordinates"]
+    assert list(of_dry_air.OF_PATCHES) == in_dry_air["stoppers"]["coordinates"]
+    for part in (content(), stoppers, in_dry_air, in_dry_air["stoppers"]):
         assert 0 < part["margins"][CONFIDENCES[0]] <= part["margins"][CONFIDENCES[1]] < 5
     for one in (process("tips"), process("full"), Surrogate(**stoppers["forces"]), Surrogate(**stoppers["full"])):
         assert len(one.nodes[0]) == len(one.columns)
@@ -70,5 +81,5 @@ def test_training_goes_on_where_it_was(tmp_path):
         return done.append(point.number) or {"airs": np.zeros(1)}
 
     for chosen in (range(2), range(1, 4), range(4)):
-        training.train(tmp_path, "check_typical", chosen, {}, compute)
+        training.train(tmp_path / "check_typical", training.SETS["check_typical"].all, chosen, {}, compute)
     assert done == [0, 1, 2, 3]

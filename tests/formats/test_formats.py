@@ -4,12 +4,12 @@ import codecs
 import gzip
 import io
 import struct
-import warnings
 import zipfile
 import zlib
 
 import numpy as np
 import pytest
+from topographies import SurfaceTopography
 
 from stiction.errors import ScanError
 from stiction.formats import high_speed, packed
@@ -19,9 +19,6 @@ from stiction.formats.texts.table import plain as plain_text
 from stiction.scans.reading import Source, read
 from stiction.streams import stream
 
-with warnings.catch_warnings():
-    warnings.simplefilter("ignore", ImportWarning)  # of NuMPI, without mpi4py
-    SurfaceTopography = pytest.importorskip("SurfaceTopography")
 h5py = pytest.importorskip("h5py")
 
 #: Rougher along the second axis; 64 x 40 points of 100 nm.

@@ -12,6 +12,7 @@ from stiction.contact.voltage import Capacitor, Dielectric
 from stiction.life.holding import energy_of_voltage, length_at_voltage, tip_length_at_voltage
 
 PAPER = Beam(1500e-6, 30e-6, 2.6e-6, 164e9, 20e-6, 1)
+PER_WIDTH = PAPER.bending_stiffness / PAPER.width  # [N m]
 CONTACT = 1.72e-3  # adhesion at contact that arrests the crack near 1001 µm [J m⁻²]
 #: Crack lengths by finite elements of a whole beam with unilateral contact, 1.7 mJ/m² within 60 nm, and the field
 #: everywhere: two elements between which the crack ends, by voltage [V] and distance [m]; [µm].
@@ -29,26 +30,32 @@ def energy(voltage, distance, gap=PAPER.gap):
     return energy_of_voltage(Capacitor(Dielectric(distance, 1.0), voltage), gap)
 
 
-def crack_in_field(voltage, distance):
-    """Crack length of a beam that adheres at contact, with the attraction of a voltage along its open part [m]."""
-    gap, scale = PAPER.gap, arrest_length(CONTACT, PAPER)
-    per_width = PAPER.bending_stiffness / PAPER.width
+def length_in_field(voltage, distance, ends, x, start, guess):
+    """Length of the open part of a beam in the field of a voltage along it, from the conditions at its ends [m].
+
+    Deflections are in units of the gap, lengths in units of ``guess`` [m], and places ``x`` from 0 to 1.
+    """
 
     def bent(_, y, p):
-        length = p[0] * scale
-        load = -VACUUM_PERMITTIVITY * voltage**2 / (2 * (np.maximum(y[0], 0) * gap + distance) ** 2)
-        return np.vstack([y[1:], load * length**4 / (per_width * gap)])
+        load = -VACUUM_PERMITTIVITY * voltage**2 / (2 * (np.maximum(y[0], 0) * PAPER.gap + distance) ** 2)
+        return np.vstack([y[1:], load * (p[0] * guess) ** 4 / (PER_WIDTH * PAPER.gap)])
+
+    found = solve_bvp(bent, ends, x, start, p=[1.0], tol=1e-6, max_nodes=100_000)
+    assert found.success, found.message
+    return found.p[0] * guess
+
+
+def crack_in_field(voltage, distance):
+    """Crack length of a beam that adheres at contact, with the attraction of a voltage along its open part [m]."""
+    scale = arrest_length(CONTACT, PAPER)
 
     def ends(clamp, front, p):
-        length = p[0] * scale
-        moment = front[2] * gap / length**2
-        return np.array([clamp[0] - 1, clamp[1], front[0], front[1], per_width * moment**2 / (2 * CONTACT) - 1])
+        moment = front[2] * PAPER.gap / (p[0] * scale) ** 2
+        return np.array([clamp[0] - 1, clamp[1], front[0], front[1], PER_WIDTH * moment**2 / (2 * CONTACT) - 1])
 
     x = 1 - np.linspace(1, 0, 800) ** 2
     start = np.vstack([1 - 3 * x**2 + 2 * x**3, 6 * (x**2 - x), 12 * x - 6, 12 + 0 * x])
-    found = solve_bvp(bent, ends, x, start, p=[1.0], tol=1e-6, max_nodes=100_000)
-    assert found.success, found.message
-    return found.p[0] * scale
+    return length_in_field(voltage, distance, ends, x, start, scale)
 
 
 @pytest.mark.parametrize(("voltage", "distance"), [(0.0, 1e-7), (1.0, 1e-7), (3.0, 1e-7), (10.0, 1e-7), (1.0, 25.6e-9)])
@@ -109,23 +116,15 @@ def test_where_the_voltage_alone_holds_the_length_is_that_of_its_energy():
 
 def tip_in_field(force, voltage, distance):
     """Length of a beam held at its tip by a force per width, and by a voltage along its open part [m]."""
-    gap, per_width = PAPER.gap, PAPER.bending_stiffness / PAPER.width
-    scale = (3 * per_width * gap / force) ** (1 / 3)
-
-    def bent(_, y, p):
-        length = p[0] * scale
-        load = -VACUUM_PERMITTIVITY * voltage**2 / (2 * (np.maximum(y[0], 0) * gap + distance) ** 2)
-        return np.vstack([y[1:], load * length**4 / (per_width * gap)])
+    scale = (3 * PER_WIDTH * PAPER.gap / force) ** (1 / 3)
 
     def ends(clamp, tip, p):
-        pull = per_width * tip[3] * gap / (p[0] * scale) ** 3
+        pull = PER_WIDTH * tip[3] * PAPER.gap / (p[0] * scale) ** 3
         return np.array([clamp[0] - 1, clamp[1], tip[0], tip[2], pull / force - 1])
 
     x = 1 - np.linspace(1, 0, 800) ** 3
     start = np.vstack([1 - 1.5 * x**2 + x**3 / 2, 1.5 * x**2 - 3 * x, 3 * x - 3, 3 + 0 * x])
-    found = solve_bvp(bent, ends, x, start, p=[0.9], tol=1e-6, max_nodes=100_000)
-    assert found.success, found.message
-    return scale, found.p[0] * scale
+    return scale, length_in_field(voltage, distance, ends, x, start, scale)
 
 
 @pytest.mark.parametrize(("voltage", "force"), [(1.0, 0.5), (3.0, 0.5), (10.0, 0.5), (10.0, 3.0)])

@@ -40,19 +40,9 @@ def listed(names):
     return list(names.values() if isinstance(names, dict) else names)
 
 
-def wanted_files(plan):
-    """Files that the targets want."""
-    return [
-        name.format(**at)
-        for stage, _ in stages().values()
-        for at in stage.jobs_of_targets(plan)
-        for name in stage.files.values()
-    ]
-
-
 def reached():
     """All jobs behind the files that the targets want, by the first name of each."""
-    wanted = wanted_files(PLAN)
+    wanted = every_stage.wanted(PLAN)
     wanted += [f"devices/{stage}/{case}" for stage in ("safe_lengths", "cracks") for case in PLAN.devices.cases]
     wanted += [f"devices/chart/{case}" for name in PLAN.devices.with_chart for case in PLAN.devices.chart_cases(name)]
     wanted += [f"devices/stoppers/{name}" for name in PLAN.devices.stoppers]
@@ -148,7 +138,7 @@ def test_no_two_stages_write_the_same_file():
 def without_studies(*studies):
     """Jobs of the paper with only some of its studies."""
     plan = Plan(load({"run": {"studies": list(studies)}}))
-    return behind(Graph(plan), wanted_files(plan))
+    return behind(Graph(plan), every_stage.wanted(plan))
 
 
 def studied(jobs):

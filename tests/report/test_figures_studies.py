@@ -149,7 +149,8 @@ def test_figure_13_shows_slopes_and_published_values():
     sides = {line.get_marker(): list(line.get_ydata()) for line in panel.get_lines() if line.get_marker() in ("1", "2")}
     np.testing.assert_allclose([sides["1"], sides["2"]], -6 * np.array([[1.5, 1.2], [0.7, 0.9]]))
     names = [text.get_text() for text in panel.figure.legends[0].get_texts()]
-    assert names == [f"one-sided slopes of the mean: moment {side}" for side in ("lower", "higher")]
+    sides = [f"one-sided slopes of the mean: moment {side}" for side in ("lower", "higher")]
+    assert names == ["rms, ± standard error", *sides]
 
 
 def bars(panel):
@@ -383,6 +384,7 @@ def test_figure_17_shows_the_variance_lost_without_the_last_coordinate_at_every_
     for line in panel.lines[:2]:
         assert_allclose(line.get_xydata(), [[0.5, 5e-4], [0.9, 9e-4]])
     assert "$N_g$ = 3" in panel.get_title("left")
+    assert panel.get_legend_handles_labels()[1][-1] == "tolerance,\nabove: 4 kept"
 
 
 def test_figure_18_shows_the_cumulative_probabilities_of_samples_and_orders():

@@ -82,7 +82,7 @@ def test_overview_is_written_without_a_warning_and_no_panel_covers_another(tmp_p
     boxes = [axes.get_tightbbox() for axes in figure.axes if axes.get_label() != "<colorbar>"]
     for left, right in zip(boxes, boxes[1:], strict=False):
         assert left.x1 < right.x0
-    assert tuple(figure.get_size_inches()) == (7.2, 2.2)
+    assert tuple(figure.get_size_inches()) == (7.2, 2.4)
 
 
 def test_equal_data_give_equal_files(tmp_path):
@@ -104,7 +104,7 @@ def test_the_law_is_that_of_the_sample_of_median_energy():
     vectors, limit = stage_forces.vectors(dataset)
     median = vectors[np.argsort(vectors[:, 0])[len(vectors) // 2]]
     panel = overview("b", character(), dataset, beams(), {(0.5, "NG"): beams()}, PUBLISHED).axes[1]
-    distance, force = next(line for line in panel.lines if line.get_label() == "Eq. (12)").get_data()
+    distance, force = next(line for line in panel.lines if line.get_label() == "a fitted law").get_data()
     law = forcelaw.coefficients(median[None], limit)[0]
     np.testing.assert_allclose(force, 1e-6 * forcelaw.pressure(law, 1e-9 * distance), rtol=1e-6)
 
@@ -128,7 +128,7 @@ def test_bars_are_the_standard_deviations_over_the_beams_and_those_published():
 
 def test_law_of_the_typical_curve_lies_on_it():
     panel = draw().axes[1]
-    law = next(line for line in panel.lines if line.get_label() == "Eq. (12)").get_xydata()
+    law = next(line for line in panel.lines if line.get_label() == "a fitted law").get_xydata()
     curves_drawn = [segment for segment in panel.collections[0].get_segments() if len(segment)]
     inside = [law[law[:, 0] > curve[0, 0]] for curve in curves_drawn]
     off = [np.abs(np.interp(x, *c.T) - f).max() for c, (x, f) in zip(curves_drawn, (i.T for i in inside), strict=True)]

@@ -407,8 +407,14 @@ def test_histogram_counts_only_beams_that_ended_s_shaped():
     beams = released(np.linspace(600e-6, 1500e-6, 40), [0] * 25 + [1] * 10 + [2] * 5)
     shapes, histogram = beam_shapes(beams).axes
     assert sum(bar.get_height() for bar in histogram.patches) == 25
-    assert histogram.texts[0].get_text().startswith("25 of 40 beams S-shaped\n877 ± ")  # mean of the first 25 of 40
-    assert len(shapes.lines) == 3 + 1
+    said = histogram.texts[0].get_text()
+    assert said.startswith("25 of 40 beams S-shaped\nmean ± std: 877 ± ")  # mean of the first 25 of 40
+    assert len(shapes.lines) == 3 + 1 + 1, "one is the entry of the legend"
+    assert [text.get_text() for text in shapes.get_legend().get_texts()] == [
+        "each beam",
+        "one S-shaped beam",
+        "substrate",
+    ]
     np.testing.assert_allclose(shapes.lines[-1].get_xydata().T, 1e6 * np.array([beams.node, beams.deflection[0]]))  # µm
     assert shapes.yaxis_inverted()
 

@@ -41,4 +41,5 @@ def test_the_figure_has_a_curve_for_each_humidity_and_equal_bytes():
     figure = pressing.figure(DATA)
     (panel,) = figure.axes
     assert [text.get_text() for text in panel.get_legend().texts] == ["RH 0.6", "RH 0.9"]
+    assert panel.get_legend().get_title().get_text() == "bars: ± standard error, shifted"
     assert style.png(figure) == style.png(pressing.figure(DATA))

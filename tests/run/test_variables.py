@@ -12,6 +12,7 @@ from conventions import faults, is_udunits
 
 from stiction.plan.graph import stages
 from stiction.run import storage, variables
+from stiction.run.fingerprint import PACKAGE
 
 ROWS = variables.rows()
 
@@ -42,6 +43,17 @@ def test_energies_of_strips_and_beams_have_different_names():
     strips, beams = ROWS["", "adhesion_energy"], ROWS["beams", "apparent_energy"]
     assert (strips.symbol, beams.symbol) == ("ē", "Γ")
     assert ("beams", "adhesion_energy") not in ROWS
+
+
+#: Modules of stages with units that depend on the configuration, and with datasets for users, which have no row.
+STATED = {"answer.answer", "axes.law", "axes.requirement", "devices.budget", "test_beams.inference"}
+FOR_USERS = {"devices.results", "laws.samples", "surfaces.maps"}
+
+
+def test_units_and_meanings_stand_in_the_table_alone():
+    folder = PACKAGE / "stages"
+    stating = {path for path in folder.rglob("*.py") if re.search(r'"(units|long_name)":', path.read_text("utf-8"))}
+    assert {".".join(path.relative_to(folder).with_suffix("").parts) for path in stating} == STATED | FOR_USERS
 
 
 @pytest.mark.parametrize(

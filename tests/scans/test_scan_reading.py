@@ -9,16 +9,13 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from topographies import SurfaceTopography
 
 from stiction.errors import ScanError
 from stiction.formats.heights import height_channel
 from stiction.scans import reading
 from stiction.scans.reading import Source, read
 from stiction.streams import stream
-
-with warnings.catch_warnings():
-    warnings.simplefilter("ignore", ImportWarning)  # of NuMPI, without mpi4py
-    SurfaceTopography = pytest.importorskip("SurfaceTopography")
 
 #: Rougher along the second axis; 64 x 40 points of 100 nm.
 HEIGHTS = 3e-9 * stream(1, "reading").standard_normal((64, 40)) * np.linspace(0.5, 1.5, 40)

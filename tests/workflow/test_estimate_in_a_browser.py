@@ -71,15 +71,19 @@ def test_the_file_of_the_page_is_that_of_its_sliders(opened):
 
 @pytest.mark.parametrize("kind", ["cantilever", "stopper"])
 @pytest.mark.parametrize("known", ["[]", "['hurst', 'corner_rad_per_um', 'kurtosis']"])
-def test_the_command_says_of_the_file_of_the_page_what_the_page_says(opened, tmp_path, capsys, kind, known):
+@pytest.mark.parametrize("air", ["0.6", "dry"])
+def test_the_command_says_of_the_file_of_the_page_what_the_page_says(opened, tmp_path, capsys, kind, known, air):
     moved = f"""
     document.getElementById('kind').value = '{kind}';
+    const air = document.getElementById('humidity');
+    air.value = '{air}' === 'dry' ? air.min : '{air}';
     for (const box of document.querySelectorAll('input[type=checkbox]')) box.checked = false;
     for (const key of {known}) document.getElementById('known_' + key).click();
     document.getElementById('form').dispatchEvent(new Event('input', {{bubbles: true}}));
     return ['said', 'stuck', 'yaml'].map((id) => document.getElementById(id).textContent);
     """
     said, stuck, text = opened.run(moved)
+    assert f"humidities: [{air}]" in text
     (tmp_path / "mine.yaml").write_text(text, encoding="utf-8")
     assert main(["check", str(tmp_path / "mine.yaml"), "-d", str(tmp_path)]) == 0
     capsys.readouterr()

@@ -1,8 +1,6 @@
 """The example of measured surfaces: its scans have the truth, and its prediction is compared with it."""
 
-import importlib.util
 import shutil
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,6 +8,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import yaml
+from configurations import module
 from conftest import snakemake
 
 import stiction
@@ -18,16 +17,7 @@ pytest.importorskip("SurfaceTopography")
 FOLDER = Path(__file__).parents[2] / "examples" / "scans"
 
 
-def script(name):
-    """Import a script of the example."""
-    spec = importlib.util.spec_from_file_location(name, FOLDER / f"{name}.py")
-    loaded = importlib.util.module_from_spec(spec)
-    sys.modules[name] = loaded  # dataclasses look their module up
-    spec.loader.exec_module(loaded)
-    return loaded
-
-
-draw, compare = script("draw"), script("compare")
+draw, compare = (module(FOLDER / f"{name}.py") for name in ("draw", "compare"))
 SMALL = [replace(scans, side=5e-6, pixel=20e-9) for scans in draw.SCANS]
 
 

@@ -117,10 +117,11 @@ class Stay:
 
 @dataclass(frozen=True)
 class Between:
-    """Strictest size to build of the computed airs between the stated ones."""
+    """Strictest size to build of the computed airs between the stated ones. It is interpolated."""
 
     humidity: float  #: [-]
     size: float  #: [m, N]
+    safe: float  #: in all of these airs, if every cause counts as in the worse of the stated airs around [m, N]
 
 
 @dataclass(frozen=True)
@@ -185,9 +186,9 @@ class Answer:
 
     @property
     def is_enough_between(self) -> bool:
-        """Whether the stated size is also within that of all computed airs between the stated ones."""
+        """Whether the stated size is also on the safe side of all computed airs between the stated ones."""
         sign = self.sought.sign
-        return self.is_enough and (self.between is None or sign * self.size <= sign * self.between.size)
+        return self.is_enough and (self.between is None or sign * self.size <= sign * self.between.safe)
 
     @property
     def verdict(self) -> Verdict:

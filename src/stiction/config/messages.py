@@ -56,18 +56,16 @@ def is_number(value: object) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < 1e300
 
 
-def _is_integer(value):
-    """Whether a value is written as a whole number: 5000 is, 5000.0 is not."""
-    return is_number(value) and isinstance(value, int)
-
-
 @cache
 def _strict():
     """Class of the validator. Its library is imported here because a plan of a known configuration does not need it."""
     from jsonschema import Draft202012Validator, validators
 
     types = Draft202012Validator.TYPE_CHECKER.redefine_many(
-        {"number": lambda _, value: is_number(value), "integer": lambda _, value: _is_integer(value)}
+        {
+            "number": lambda _, value: is_number(value),
+            "integer": lambda _, value: is_number(value) and isinstance(value, int),  # as written: 5000 is, 5000.0 not
+        }
     )
     return validators.extend(Draft202012Validator, type_checker=types)
 

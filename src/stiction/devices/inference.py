@@ -167,13 +167,9 @@ def score(lengths: np.ndarray) -> PPoly:
     ASSUME: the long end goes on as straight as the last two quantiles.
     """
     tail, inner = fit_tail(lengths), np.log(np.quantile(lengths, ndtr(_QUANTILES)))
-    ends = [np.log(tail.length(ndtr(z))) for z in _SHORT], [inner[-1] + (_FAR - _QUANTILES[-1]) * _last_slope(inner)]
+    last_slope = (inner[-1] - inner[-2]) / (_QUANTILES[-1] - _QUANTILES[-2])
+    ends = [np.log(tail.length(ndtr(z))) for z in _SHORT], [inner[-1] + (_FAR - _QUANTILES[-1]) * last_slope]
     return PchipInterpolator(np.concatenate([ends[0], inner, ends[1]]), [*_SHORT, *_QUANTILES, _FAR])
-
-
-def _last_slope(inner):
-    """Slope of ln l over the score at the end."""
-    return (inner[-1] - inner[-2]) / (_QUANTILES[-1] - _QUANTILES[-2])
 
 
 # Discrepancy of the model

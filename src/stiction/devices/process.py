@@ -233,15 +233,16 @@ def _next(laws, errors, deviations, target):
     """
     before, ends = float(target.std()), [law.ends for law in laws]
     slopes, *_ = np.linalg.lstsq(np.concatenate(deviations, axis=1), target - target.mean(), rcond=1e-9)
-    law_slopes = np.split(slopes, np.cumsum([law.coefficients.size for law in laws])[:-1])
+    of_laws = np.split(slopes, np.cumsum([law.coefficients.size for law in laws])[:-1])
+    law_slopes = [part.reshape(law.coefficients.shape) for law, part in zip(laws, of_laws, strict=True)]
     settings = np.unique(np.concatenate([law.settings for law in laws]))
     candidates = np.sort([*settings, *(settings[1:] + settings[:-1]) / 2])
     low, high = max(end[0] for end in ends), min(end[1] for end in ends)
     candidates = candidates[(candidates >= low) & (candidates <= high)]
-    gained = [
+    gained = [  # variance that one more setting takes away
         sum(
-            _gain(law, law_slope.reshape(law.coefficients.shape), value, error)
-            for law, law_slope, error in zip(laws, law_slopes, errors, strict=True)
+            float(np.einsum("qc,qcrd,rd", slopes, law.covariance - law.with_setting(value, error), slopes))
+            for law, slopes, error in zip(laws, law_slopes, errors, strict=True)
         )
         for value in candidates
     ]
@@ -251,8 +252,3 @@ def _next(laws, errors, deviations, target):
     following = float(candidates[most])
     again = all(following in law.settings for law in laws)
     return following, again, before, float(np.sqrt(max(before**2 - gained[most], 0.0)))
-
-
-def _gain(law, slopes, value, error):
-    """Variance of a number, linear in the coefficients of a law, that one more setting takes away."""
-    return float(np.einsum("qc,qcrd,rd", slopes, law.covariance - law.with_setting(value, error), slopes))

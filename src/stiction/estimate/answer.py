@@ -16,7 +16,7 @@ from typing import Any
 from stiction.contact.air import is_humid
 from stiction.estimate.force import ForceRow, Stopper
 from stiction.estimate.length import Impossible, LengthRow, Lengths, NotLearnt, after, normal_score, score_at
-from stiction.estimate.question import IN_DRY_AIR, Question
+from stiction.estimate.question import Question
 from stiction.estimate.state import film
 from stiction.estimate.table import Surrogate
 from stiction.estimate.voltage import at_voltage, without_voltage
@@ -76,8 +76,6 @@ def in_one_air(
     NotLearnt
         If the estimate does not know it.
     """
-    if not is_humid(air):
-        raise NotLearnt(IN_DRY_AIR)
     found = _in_air(question, air, *learnt)
     return [question.row(found.row(p, normal_score(p))) for p in fractions]
 
@@ -173,12 +171,15 @@ def _in_air(question, air, table, tips, full):
     pairs += [question.members[0].get(name, beam) + question.members[1].get(name, substrate) for name in names]
     stated, *members = (_lengths(question, heights, air, table, tips, full) for heights in pairs)
     drive = question.drive(table["modulus"])
-    return LengthsInAir(question.errors(table), stated, tuple(members), question.averaged, drive)
+    errors = question.errors(table if is_humid(air) else table["dry"])
+    return LengthsInAir(errors, stated, tuple(members), question.averaged, drive)
 
 
 def _lengths(question, heights, air, table, tips, full):
     """Lengths on the sum of two surfaces at one humidity."""
     try:
+        if not is_humid(air):
+            return question.in_dry_air(heights, table)
         water = film(air, table["temperature"], 2.0, table["water"])
         return question.lengths(heights, water, table, tips, full)
     except (ArithmeticError, ValueError) as impossible:  # such as the logarithm of a negative number

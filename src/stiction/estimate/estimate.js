@@ -109,22 +109,60 @@ function changedBy({logarithms, slope}, ratio, power) {
   const shift = median - ratio - (1 - power ** 2) * scatter ** 2 / 2;
   return {logarithms: logarithms.map((each) => shift + power * (each - median)), slope: power * slope};
 }
-function ofStopper({sides, force}, {modulus, stoppers}) {
-  const [low, high] = stoppers.sides, [one, other] = sides;
+
+// dry air
+const AT_REST = (2 / 15) ** (1 / 6) * 2.09e-10, POLYSILICON = 1.865e-19;
+const workOf = (constant) => constant / (16 * Math.PI * AT_REST ** 2), slopeOf = ({rms, moments}) => rms * Math.sqrt(moments[1]);
+function ofDryContact({heights, constant, modulus}) {
+  const [low, second, fourth] = heights.moments;
+  return [Math.log(heights.rms), Math.log(workOf(constant) / (AT_REST * modulus * slopeOf(heights))), Math.log(fourth / second ** 2),
+    Math.log(low ** 2 * second), heights.skewness, heights.kurtosis, Math.log(curvature(heights))];
+}
+const flatSlope = ({constant, stiffness}) => (13.5 * workOf(constant) / stiffness) ** 0.25;
+function ofDryTip(tip) {
+  return [...ofDryContact(tip), Math.log(flatSlope(tip) / slopeOf(tip.heights)), Math.log(tip.width * curvature(tip.heights))];
+}
+const ofDryPatch = (patch) => [...ofDryContact(patch), Math.log(patch.area * curvature(patch.heights) ** 2)];
+function dryLengths(tip, gap, {tips, full, coordinates: names}) {
+  const onSummits = (one) => falling(known(tips, ofDryTip(one), names), Math.log(1.5 * gap / flatSlope(one)));
+  let found = onSummits(tip), power = 1;
+  for (let k = 0; k < 2; k++) {
+    const slope = 1.5 * gap / lengthAt(found, -2), scatter = 4 * (found.logarithms[0] - found.logarithms[2]) / 2;
+    const change = known(full, ofDryTip({...tip, stiffness: 13.5 * workOf(tip.constant) / slope ** 4}), names);
+    power = Math.max(1, change.power);
+    found = onSummits({...tip, stiffness: tip.stiffness / Math.exp(change.ratio + (1 - power ** 2) * scatter ** 2 / 2)});
+  }
+  return scattered(found, power, 0);
+}
+function scattered({logarithms, slope}, power, shift) {
+  const [median] = logarithms;
+  return {logarithms: logarithms.map((each) => median + shift + power * (each - median)), slope: power * slope};
+}
+function dryReciprocals(patch, {forces, full, coordinates: names}) {
+  const place = ofDryPatch(patch), change = known(full, place, names), power = Math.max(1, change.power);
+  const found = falling(known(forces, place, names), -Math.log(workOf(patch.constant) / AT_REST * patch.area));
+  const scatter = (found.logarithms[0] - found.logarithms[2]) / 2;
+  return scattered(found, power, -change.ratio - (1 - power ** 2) * scatter ** 2 / 2);
+}
+function ofStopper({sides, force, constant = POLYSILICON}, {modulus, stoppers, dry}) {
+  const [one, other] = sides;
+  const areaOf = ({sides: [low, high]}) => {
+    if (!sides.every((side) => low * 1e-6 <= side && side <= high * 1e-6)) throw new NotLearnt(`sides of a stopper must be from ${low} to ${high} µm`);
+    return one * other;
+  };
   return {
-    lengths: (heights, water) => {
-      if (!sides.every((side) => low * 1e-6 <= side && side <= high * 1e-6)) throw new NotLearnt(`sides of a stopper must be from ${low} to ${high} µm`);
-      return reciprocals({heights, film: water, area: one * other, modulus}, stoppers);
-    },
-    drive: 0, errors: stoppers, stated: force && 1 / force,
+    lengths: (heights, water) => reciprocals({heights, film: water, area: areaOf(stoppers), modulus}, stoppers),
+    inDryAir: (heights) => dryReciprocals({heights, constant, area: areaOf(dry.stoppers), modulus}, dry.stoppers),
+    drive: 0, errors: (part) => part.stoppers, stated: force && 1 / force,
     row: ({length, intervals}) => ({size: 1 / length, intervals: Object.fromEntries(Object.entries(intervals).map(([key, [low, high]]) => [key, [1 / high, 1 / low]]))}),
   };
 }
-function ofCantilever({thickness, gap, width, length, added}, table) {
+function ofCantilever({thickness, gap, width, length, added, constant = POLYSILICON}, table) {
   const stiffness = table.modulus * thickness ** 3 / gap ** 2;
   return {
     lengths: (heights, water) => lengths({heights, film: water, stiffness, width, modulus: table.modulus}, gap, table),
-    drive: 8 * (added || 0) / (3 * stiffness * gap ** 4), errors: table, stated: length,
+    inDryAir: (heights) => dryLengths({heights, constant, stiffness, width, modulus: table.modulus}, gap, table.dry),
+    drive: 8 * (added || 0) / (3 * stiffness * gap ** 4), errors: (part) => part, stated: length,
     row: ({length, intervals}) => {
       if (length <= Math.max(thickness, gap)) throw new NotLearnt("it sticks even at a length below its gap or thickness: change voltage or dielectric");
       return {size: length, intervals};
@@ -181,27 +219,27 @@ function centre(one, score) {
   return [mean, Math.sqrt(sum(values.map((value) => (value - mean) ** 2)) / (m - 1)) * Math.sqrt(1 + 1 / m)];
 }
 function answer(question, table) {
-  const {lengths: of, drive, errors, stated, row} = (question.sides ? ofStopper : ofCantilever)(question, table);
+  const {lengths, inDryAir, drive, errors, stated, row} = (question.sides ? ofStopper : ofCantilever)(question, table);
   const airs = question.humidities.map((air) => {
-    const water = film(air, table.temperature, 2, table.water);
-    return {stated: of(question.stated, water), members: question.members.map((each) => of(each, water))};
+    const of = air > 0 ? (each) => lengths(each, film(air, table.temperature, 2, table.water)) : inDryAir;
+    return {stated: of(question.stated), members: question.members.map(of), errors: errors(air > 0 ? table : table.dry)};
   });
   const driven = (length) => drive ? atVoltage(length, drive) : length;
   const once = (p) => -Math.expm1(Math.log1p(-p) / question.touchdowns);
   const rows = FRACTIONS.map((fraction) => {
     const score = normalScore(once(fraction)), ends = {};
     for (const confidence of ["90", "95"]) {
-      const both = airs.map((one) => endsOf(one, score, confidence, errors).map((end) => driven(Math.exp(end))));
+      const both = airs.map((one) => endsOf(one, score, confidence).map((end) => driven(Math.exp(end))));
       ends[confidence] = [0, 1].map((side) => Math.min(...both.map((each) => each[side])));
     }
     const length = (one) => Math.exp(logarithmOf(one, score, question.averaged));
     return {fraction, ...row({length: driven(Math.min(...airs.map(length))), intervals: ends})};
   });
-  return {rows, stuck: stated ? stuck(question, airs, errors, withoutVoltage(stated, drive)) : null};
+  return {rows, stuck: stated ? stuck(question, airs, withoutVoltage(stated, drive)) : null};
 }
 const logarithmOf = (one, score, averaged) => averaged ? centre(one, score)[0] : Math.log(lengthAt(one.stated, score));
-function endsOf(one, score, confidence, errors) {
-  const [mean, scatter] = centre(one, score), half = Math.hypot(margin(errors, confidence, score, one.stated.slope), STUDENT[confidence] * scatter);
+function endsOf(one, score, confidence) {
+  const [mean, scatter] = centre(one, score), half = Math.hypot(margin(one.errors, confidence, score, one.stated.slope), STUDENT[confidence] * scatter);
   return [mean - half, mean + half];
 }
 function scoreAt(logarithm, value) {
@@ -213,9 +251,9 @@ function scoreAt(logarithm, value) {
   return high;
 }
 const after = (score, touchdowns) => -Math.expm1(touchdowns * Math.log1p(-fractionOf(score)));
-function stuck(question, airs, errors, bare) {
+function stuck(question, airs, bare) {
   const value = Math.log(bare), found = airs.map((one) => {
-    const lines = [(score) => logarithmOf(one, score, question.averaged), ...[1, 0].map((k) => (score) => endsOf(one, score, "95", errors)[k])];
+    const lines = [(score) => logarithmOf(one, score, question.averaged), ...[1, 0].map((k) => (score) => endsOf(one, score, "95")[k])];
     return lines.map((line) => after(scoreAt(line, value), question.touchdowns));
   });
   return [0, 1, 2].map((k) => Math.max(...found.map((each) => each[k])));

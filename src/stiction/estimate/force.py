@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from stiction.config.units import to_si
+from stiction.estimate import dry
 from stiction.estimate.length import LengthRow, Lengths, NotLearnt, falling, known_at, most_after
 from stiction.estimate.state import OF_PATCHES, Film, PatchState
 from stiction.estimate.statistics import Heights
@@ -66,6 +67,7 @@ class Stopper:
     touchdowns: int = 1
     left_out: tuple[str, ...] = ()  #: keys that a run would read as well
     averaged: bool = False
+    constant: float = dry.POLYSILICON  #: Hamaker constant of the solids in dry air [J]
     unit: ClassVar[str] = "uN"  #: of its size, a force
 
     @property
@@ -94,13 +96,23 @@ class Stopper:
     def lengths(self, heights: Heights, water: Film, table: Mapping[str, Any], *_tips: Surrogate | None) -> Lengths:
         """Reciprocals of its pull-off forces on the sum of two surfaces [1/N]."""
         learnt = table["stoppers"]
+        patch = PatchState(heights, water, self._area(learnt), table["modulus"])
+        return reciprocals(patch, *(Surrogate(**learnt[name]) for name in ("forces", "full")))
+
+    def in_dry_air(self, heights: Heights, table: Mapping[str, Any]) -> Lengths:
+        """Reciprocals of its pull-off forces in dry air [1/N]."""
+        learnt = table["dry"]["stoppers"]
+        patch = dry.DryPatch(heights, self.constant, self._area(learnt), table["modulus"])
+        return dry.reciprocals(patch, *dry.processes(learnt, "forces", "full"))
+
+    def _area(self, learnt):
+        """Area [m²] with learnt sides."""
         if self.force is not None and not self.force > 0:
             raise ValueError(f"a restoring force must be positive, got {self.force}")
         low, high = (to_si(end, "um") for end in learnt["sides"])
         if not all(low <= side <= high for side in self.sides):
             raise NotLearnt(f"sides of a stopper must be from {learnt['sides'][0]:g} to {learnt['sides'][1]:g} µm")
-        patch = PatchState(heights, water, math.prod(self.sides), table["modulus"])
-        return reciprocals(patch, *(Surrogate(**learnt[name]) for name in ("forces", "full")))
+        return math.prod(self.sides)
 
     def row(self, row: LengthRow) -> ForceRow:
         """Force by its reciprocal."""

@@ -19,7 +19,7 @@ _AT_MOST = 1.645
 #: power, and normal score of the largest tips: `stiction.analysis.model_error.few_tip_ratios`.
 _FULL, _SUMMITS, _STUDENT, _POWER_ERROR, _LARGEST = 8, 64, 1.17, 0.1, 3.09
 #: Scatter of the logarithm of P over that of the length. ASSUME: P falls as θ⁻¹ as that of smooth tips, the safe side.
-_OF_FORCES = 4.0
+OF_FORCES = 4.0
 
 
 @dataclass(frozen=True)
@@ -126,7 +126,7 @@ def change(state: TipState, found: Lengths, gap: float, full: Surrogate) -> floa
 
 def most(ratio: float, fall: float) -> float:
     """Upper end of a ratio of the means of few tips, which a run applies, from the `Lengths.fall` of the lengths."""
-    scatter = _OF_FORCES * fall
+    scatter = OF_FORCES * fall
     of_means = _STUDENT * math.sqrt(math.expm1(scatter**2) * (1 / (_FULL - 1) + 1 / (_SUMMITS - 1)))
     error = math.hypot(of_means, _POWER_ERROR * scatter * max(_LARGEST - scatter, 0.0))
     return ratio * math.exp(_AT_MOST * error)

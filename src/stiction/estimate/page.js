@@ -11,7 +11,7 @@ const INPUTS = [
   ["skewness", "skewness", -1.2, 0, 0.02, null],
   ["kurtosis", "kurtosis", 3, 6, 0.05, null],
   ["substrate", "opposite surface", Object.keys(TABLE.library), "Sub1"],
-  ["humidity", "relative humidity", 0.35, 0.92, 0.01, 0.6],
+  ["humidity", "relative humidity", 0.34, 0.92, 0.01, 0.6], // its lowest stop is dry air
   ["side_um", "one side of the area in contact [µm]", 1, 6, 0.1, 3],
   ["other_um", "other side [µm]", 1, 6, 0.1, 3],
   ["force_uN", "restoring force [µN]", 1, 500, 1, 100],
@@ -24,6 +24,7 @@ const INPUTS = [
   ["dielectric_nm", "dielectric, thickness over permittivity [nm]", 10, 1000, 10, 100],
 ];
 const OWN = {[CANTILEVER]: ["thickness_um", "gap_um", "width_um", "length_um", "voltage_V", "dielectric_nm"], [STOPPER]: ["side_um", "other_um", "force_uN"]};
+const DRY = "dry", DRIEST = 0.345, airOf = (value) => value("humidity") < DRIEST ? DRY : value("humidity");
 const PAIR = ["known_skewness", "known_kurtosis"]; // a file states both or neither
 const OPEN = ["hurst", "corner_rad_per_um", "cutoff_rad_per_um", "skewness", "kurtosis"], byId = (id) => document.getElementById(id);
 
@@ -49,7 +50,7 @@ function stated() {
 function questionOf({own, kind, like, substrate, value, open}) {
   const of = (name) => added(heights({...typical(name), ...own}), heights(typical(substrate)));
   const asked = {stated: of(like), members: open ? Object.keys(TABLE.library).map(of) : [], averaged: false,
-    humidities: [value("humidity")], touchdowns: value("touchdowns")};
+    humidities: [airOf(value) === DRY ? 0 : airOf(value)], touchdowns: value("touchdowns")};
   if (kind === STOPPER) return {...asked, sides: ["side_um", "other_um"].map((key) => value(key) * 1e-6), force: value("force_uN") * 1e-6};
   const gap = value("gap_um") * 1e-6, energy = energyOf(value("voltage_V"), value("dielectric_nm") * 1e-9, gap);
   return {...asked, added: energy, thickness: value("thickness_um") * 1e-6, gap, width: value("width_um") * 1e-6, length: value("length_um") * 1e-6};
@@ -64,6 +65,7 @@ function percent(part, touchdowns) {
 function show() {
   for (const [key, , low] of INPUTS) if (!Array.isArray(low)) byId("of_" + key).textContent = byId(key).value;
   const given = stated();
+  byId("of_humidity").textContent = airOf(given.value);
   for (const kind in OWN) for (const key of OWN[kind]) byId(key).closest("label").hidden = kind !== given.kind;
   for (const key of OPEN) {
     byId(key).disabled = !(key in given.own);
@@ -95,9 +97,9 @@ function refuse(reason) {
 }
 function yamlOf({own, kind, like, substrate, value, open}) {
   const surface = Object.entries({...own, ...(open ? {like} : {})}).map(([key, of]) => `${key}: ${of}`).join(", ");
-  const air = `humidities: [${value("humidity")}], touchdowns: ${value("touchdowns")}`;
+  const air = `humidities: [${airOf(value)}], touchdowns: ${value("touchdowns")}`;
   return `run: {pairs: [mine], studies: []}\nsurfaces:\n  Mine: {${surface}}\npairs:\n` +
-    `  mine: {beam: Mine, substrate: ${substrate}, gap_um: ${value("gap_um")}, humidities: [${value("humidity")}]}\n` +
+    `  mine: {beam: Mine, substrate: ${substrate}, gap_um: ${value("gap_um")}, humidities: [${airOf(value)}]}\n` +
     `devices:\n  ${kind === STOPPER ? `Bump: {kind: stopper, pair: mine, contact_um: [${value("side_um")}, ${value("other_um")}], ` +
     `restoring_force_uN: ${value("force_uN")}, ` : `Lever: {kind: cantilever, pair: mine, ${sizesOf(value)}, `}${air}}\n`;
 }

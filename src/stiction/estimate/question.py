@@ -7,7 +7,8 @@ from typing import Any, ClassVar
 
 from stiction.config.kinds import KINDS
 from stiction.config.units import to_si
-from stiction.contact.air import DRY, is_humid, is_possible
+from stiction.contact.air import DRY, DRY_AIR, is_humid, is_possible
+from stiction.estimate import dry
 from stiction.estimate.force import Stopper
 from stiction.estimate.length import Impossible, LengthRow, Lengths, NotLearnt, lengths, most_after
 from stiction.estimate.state import Film, TipState, stiffness_of
@@ -38,13 +39,13 @@ OF_SAMPLES = {
     + ("worst_humidities",),
     "contact": ("samples", "chunks"),
 }
+#: Sections by what devices have without them.
+OF_DEFAULTS = {"attraction": {"reach": "all"}}
 #: Keys of numbers that must be positive.
 POSITIVE = ("rms_nm", "hurst", "corner_rad_per_um", "cutoff_rad_per_um", "kurtosis", "thickness_um", "gap_um")
 POSITIVE += ("width_um", "length_um", "contact_um", "restoring_force_uN", "thickness_nm", "permittivity", "touchdowns")
 #: Keys of which the second number must be above the first. A length in metres is not.
 _IN_ORDER = ("thickness_um", "length_um"), ("gap_um", "length_um"), ("corner_rad_per_um", "cutoff_rad_per_um")
-#: Why the estimate refuses air without water.
-IN_DRY_AIR = "dry air was not learnt"
 #: Numbers that a surface may leave open.
 _OPEN = ("skewness", "kurtosis", "hurst", "corner_rad_per_um", "cutoff_rad_per_um")
 #: These by the words of key ``unknown``. An unknown rms is not among them.
@@ -67,6 +68,7 @@ class Question:
     left_out: tuple[str, ...] = ()  #: keys that a run would read as well
     averaged: bool = False  #: whether the length is the mean over typical surfaces, not that on the stated one
     added: float = 0.0  #: energy that a voltage adds [J m⁻²]
+    constant: float = dry.POLYSILICON  #: Hamaker constant of the solids in dry air [J]
     unit: ClassVar[str] = "um"  #: of its size, a length
 
     @property
@@ -102,6 +104,11 @@ class Question:
         """Lengths at which it sticks on the sum of two surfaces [m]."""
         state = TipState(heights, water, self._stiffness(table["modulus"]), self.width, table["modulus"])
         return lengths(state, self.gap, tips, full)
+
+    def in_dry_air(self, heights: Heights, table: Mapping[str, Any]) -> Lengths:
+        """Lengths at which it sticks in dry air [m]."""
+        tip = dry.DryTip(heights, self.constant, self._stiffness(table["modulus"]), self.width, table["modulus"])
+        return dry.lengths(tip, self.gap, *dry.processes(table["dry"], "tips", "full"))
 
     def row(self, row: LengthRow) -> LengthRow:
         """Row of lengths as it is.
@@ -171,15 +178,11 @@ def refuse_impossible(numbers: Mapping[str, Any], names: Mapping[str, str] | Non
     ------
     Impossible
         If a number is impossible.
-    NotLearnt
-        If the air is dry.
     """
     names = {key: key for key in numbers} | (names or {})
     for air in numbers.get("humidities", ()):
-        if air == DRY or (is_possible(air) and not is_humid(air)):
-            raise NotLearnt(IN_DRY_AIR)
-        if not is_possible(air):
-            raise Impossible(f"{names['humidities']} must be above 0 and below 1, got {air}")
+        if not (air == DRY or is_possible(air)):
+            raise Impossible(f"{names['humidities']} must be {DRY}, or above 0 and below 1, got {air}")
     for key in [key for key in POSITIVE if key in numbers]:
         value = numbers[key]
         if not all(0 < each < math.inf for each in (value if isinstance(value, Sequence) else [value])):
@@ -211,7 +214,8 @@ def questions(content: Mapping[str, Any], table: Mapping[str, Any]) -> dict[str,
 def _question(name, device, content, table):
     """Question of one device."""
     others = [f"{part}.{key}" for part, keys in OF_SAMPLES.items() for key in content.get(part, {}) if key not in keys]
-    if others := [*others, *(key for key in content if key not in (*OF_FILES, *OF_NAMES, *OF_SAMPLES))]:
+    others += [key for key in content if key not in (*OF_FILES, *OF_NAMES, *OF_SAMPLES)]
+    if others := [key for key in others if key not in OF_DEFAULTS or content[key] != OF_DEFAULTS[key]]:
         raise NotLearnt(f"{others[0]} was not learnt")
     known, of = _of_kind(device["kind"])
     left_out = tuple(key for key in LEFT_OUT if key in device)
@@ -222,8 +226,17 @@ def _question(name, device, content, table):
         raise NotLearnt(f"{others[0]} of a pair was not learnt")
     refuse_impossible(device | device.get("dielectric", {}))
     surfaces = library | content.get("surfaces", {})
-    sides = [surface(surfaces[pair[side]], library) for side in ("beam", "substrate")]
-    return of(name, device, sides, left_out=left_out)
+    entries = [dict(surfaces[pair[side]]) for side in ("beam", "substrate")]
+    constant = dry.constant_of(entries, content.get("materials", {}))
+    if any([entry.pop("material", "") for entry in entries]) and any(map(is_humid, airs_of(device))):
+        raise NotLearnt("material of a surface was learnt in dry air alone")
+    sides = [surface(entry, library) for entry in entries]
+    return of(name, device, sides, left_out=left_out, constant=constant)
+
+
+def airs_of(device: Mapping[str, Any]) -> tuple[float, ...]:
+    """Humidities of a device, that of dry air by its word or as a number [-]."""
+    return tuple(DRY_AIR.humidity if air == DRY else air for air in device["humidities"])
 
 
 def _of_kind(name):
@@ -241,7 +254,7 @@ def of_area(name: str, device: Mapping[str, Any], sides: Sequence, **more: Any) 
     kind = KINDS.get(device.get("kind"))
     stated = kind.stated(device) if kind and any(set(way.keys) <= device.keys() for way in kind.ways) else device
     force = to_si(stated["restoring_force_uN"], "uN") if "restoring_force_uN" in stated else None
-    airs, touchdowns = tuple(device["humidities"]), device.get("touchdowns", 1)
+    airs, touchdowns = airs_of(device), device.get("touchdowns", 1)
     return Stopper(name, surfaces, members, airs, area, force, touchdowns, **more)
 
 
@@ -250,5 +263,5 @@ def of_numbers(name: str, device: Mapping[str, Any], sides: Sequence, **more: An
     surfaces, members = zip(*sides, strict=True)
     sizes = [to_si(device[f"{size}_um"], "um") for size in ("thickness", "gap", "width")]
     length = to_si(device["length_um"], "um") if "length_um" in device else None
-    airs, more = tuple(device["humidities"]), more | {"added": energy_of(device, sizes[1])}
+    airs, more = airs_of(device), more | {"added": energy_of(device, sizes[1])}
     return Question(name, surfaces, members, airs, *sizes, length, device.get("touchdowns", 1), **more)

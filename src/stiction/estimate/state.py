@@ -61,7 +61,7 @@ def _tension(water):
     return water.energy / water.height
 
 
-def _curvature(heights):
+def curvature(heights: Heights) -> float:
     """Root of the ratio of the spectrum's moments of fourth and second order, which sets the size of summits [1/m]."""
     _, second, fourth = heights.moments
     return math.sqrt(fourth / second)
@@ -98,7 +98,7 @@ class TipState:
     @property
     def coordinates(self) -> tuple[float, ...]:
         """Numbers on which the slope of a stuck tip depends, by ``COORDINATES``, logarithms but for heights' form."""
-        summits = _curvature(self.heights)
+        summits = curvature(self.heights)
         return (
             *_of_contact(self.heights, self.film, self.modulus),
             math.log(self.flooded_slope / self.heights.slope),
@@ -125,7 +125,7 @@ class PatchState:
     @property
     def coordinates(self) -> tuple[float, ...]:
         """Numbers on which the pull-off force depends, by ``OF_PATCHES``, as those of `TipState`."""
-        summits = _curvature(self.heights)
+        summits = curvature(self.heights)
         return (
             *_of_contact(self.heights, self.film, self.modulus),
             math.log(self.area * summits**2),

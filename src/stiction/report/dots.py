@@ -36,9 +36,9 @@ class Mark:
 def draw(panel: Axes, rows: Mapping[str, Sequence[Mark]], *, column: str | None = None) -> None:
     """Draw the marks of each row by its label, from top to bottom. What a panel already shows stays within its axis.
 
-    Numbers are beside their marks, or in a ``column`` below its name at the right end of the panel.
+    Numbers are beside their marks, or in a ``column`` below its name to the right of the panel.
     """
-    in_column = {"xycoords": panel.get_yaxis_transform(), "xytext": (-2, 0), "ha": "right", **_NUMBER}
+    in_column = {"xycoords": panel.get_yaxis_transform(), "xytext": (3, 0), "ha": "left", **_NUMBER}
     for row, marks in enumerate(rows.values()):
         panel.axhline(row, color="0.9", linewidth=0.6, zorder=0)
         for mark in marks:
@@ -52,7 +52,8 @@ def draw(panel: Axes, rows: Mapping[str, Sequence[Mark]], *, column: str | None 
     panel.set_ylim(len(rows) - 0.4, -0.6 - bool(column))
     if column:
         panel.annotate(column, (1, -1), **in_column)
-    _set_ends(panel, max((len(mark.text) for marks in rows.values() for mark in marks), default=0))
+    beside = [len(mark.text) for marks in rows.values() for mark in marks if column is None]
+    _set_ends(panel, max(beside, default=0))
 
 
 def _set_ends(panel, longest):
@@ -60,7 +61,7 @@ def _set_ends(panel, longest):
     low, high = panel.dataLim.intervalx
     span = (high - low) or abs(high) or 1.0
     width = _FILLED * panel.figure.get_figwidth() / panel.get_gridspec().ncols
-    right = min(0.5, (_AWAY + _CHARACTER * longest) / width)
+    right = min(0.5, (_AWAY + _CHARACTER * longest) / width) if longest else _LEFT
     panel.set_xlim(low - _LEFT * span, high + span * right / (1 - right))
 
 

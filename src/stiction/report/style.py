@@ -47,7 +47,8 @@ _BESIDE = 0.2
 _ABREAST = 4
 #: Width of the panels on a page [in]: text of 7 points has 11 pixels on a phone 358 pixels wide.
 PAGE = 3.0
-_ON_A_PAGE = ContextVar("on a page", default=False)
+#: Width of the panels on the page that is drawn [in], 0 for figures of a journal.
+_PAGE_WIDTH = ContextVar("width of a page", default=0.0)
 #: Space around a strip of a figure [in].
 _AROUND = 0.04
 #: Levels of red, green and blue of rare colours in a picture of a page, which err by half of their step; part of the
@@ -115,31 +116,41 @@ def humidity_colours(humidities: Iterable[float]) -> dict[float, tuple[float, fl
 
 
 @contextmanager
-def on_a_page() -> Iterator[None]:
-    """Draw figures for a page: all panels below each other, each as wide as a phone."""
-    token = _ON_A_PAGE.set(True)
+def on_a_page(width: float = PAGE) -> Iterator[None]:
+    """Draw figures for a page: all panels below each other, each as wide as a phone or another ``width`` [in]."""
+    token = _PAGE_WIDTH.set(width)
     try:
         yield
     finally:
-        _ON_A_PAGE.reset(token)
+        _PAGE_WIDTH.reset(token)
+
+
+def is_page() -> bool:
+    """Whether a figure is drawn for a page."""
+    return _PAGE_WIDTH.get() > 0
 
 
 def page_width(width: float) -> float:
     """Width of a figure of `panels`: that of a page while one is drawn, else ``width`` [in]."""
-    return PAGE if _ON_A_PAGE.get() else width
+    return _PAGE_WIDTH.get() or width
 
 
-def panels(rows: int, columns: int, size: tuple[float, float], **shared) -> tuple[Figure, np.ndarray]:
-    """New figure of ``size`` (width, height) [in] and its axes (rows, columns), ``shared`` as in Figure.subplots."""
-    if _ON_A_PAGE.get():
+def panels(
+    rows: int, columns: int, size: tuple[float, float], *, beside: bool = False, **shared
+) -> tuple[Figure, np.ndarray]:
+    """New figure of ``size`` (width, height) [in] and its axes (rows, columns), ``shared`` as in Figure.subplots.
+
+    On a page all panels are below each other, unless small ones stay ``beside`` each other.
+    """
+    if _PAGE_WIDTH.get() and not beside:
         return _stacked(rows, columns, size[1], shared.get("height_ratios", [1] * rows))
-    figure = Figure(figsize=size, layout="constrained")
+    figure = Figure(figsize=(page_width(size[0]), size[1]), layout="constrained")
     return figure, figure.subplots(rows, columns, squeeze=False, **shared)
 
 
 def _stacked(rows, columns, height, ratios):
     """New figure of a page with all panels of rows and columns below each other, and its axes (rows, columns)."""
-    figure = Figure(figsize=(PAGE, columns * height), layout="constrained")
+    figure = Figure(figsize=(_PAGE_WIDTH.get(), columns * height), layout="constrained")
     axes = figure.subplots(rows * columns, 1, squeeze=False, height_ratios=np.repeat(ratios, columns))
     return figure, axes.reshape(rows, columns)
 
@@ -187,7 +198,7 @@ def blocks_of_columns(
         Part of the figure, which can have a legend of its own, and its ``columns`` and ``lines``.
     """
     many, across = _arrangement(count)
-    wide, tall = (PAGE, np.inf) if _ON_A_PAGE.get() else (width(across), TALLEST)
+    wide, tall = page_width(width(across)), np.inf if _PAGE_WIDTH.get() else TALLEST
     figure = Figure(figsize=(wide, min(height * many * blocks, tall)), layout="constrained")
     parts = [figure] if blocks == 1 else figure.subfigures(blocks, 1)
     return figure, [(block, *_columns(block, count, rows, shared)) for block in parts]
@@ -195,7 +206,7 @@ def blocks_of_columns(
 
 def _arrangement(count):
     """Number of lines of columns of panels, and of columns side by side."""
-    many = -(-count // (1 if _ON_A_PAGE.get() else _ABREAST))
+    many = -(-count // (1 if _PAGE_WIDTH.get() else _ABREAST))
     return many, -(-count // many)
 
 

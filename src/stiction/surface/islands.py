@@ -66,10 +66,10 @@ def _from_the_highest(z, step, numbers):
     first, last, inverse = numbers[0], numbers[1] - 1, 1 / step
     heights, lowest = z.ravel(), first * step
     unordered, levels, above = np.empty(z.size, np.int32), np.empty(z.size, np.int32), 0
-    for place in range(z.size):
-        if heights[place] >= lowest:
-            unordered[above] = place
-            levels[above] = min(max(int(np.floor(heights[place] * inverse)), first), last) - first
+    for index in range(z.size):
+        if heights[index] >= lowest:
+            unordered[above] = index
+            levels[above] = min(max(int(np.floor(heights[index] * inverse)), first), last) - first
             above += 1
     ends = np.zeros(last - first + 2, np.int64)
     for level in levels[:above]:
@@ -77,8 +77,8 @@ def _from_the_highest(z, step, numbers):
     for level in range(last - first, -1, -1):
         ends[level] += ends[level + 1]
     places, following = np.empty(above, np.int32), ends[1:].copy()
-    for place, level in zip(unordered[:above], levels[:above]):  # noqa: B905 - compiled code knows no strict
-        places[following[level]] = place
+    for index, level in zip(unordered[:above], levels[:above]):  # noqa: B905 - compiled code knows no strict
+        places[following[level]] = index
         following[level] += 1
     return places, ends
 
@@ -109,9 +109,9 @@ def _grown(z, places, ends, fitted):
     listed, fits, number = np.empty((_SPACE, 3), np.int32), np.empty((_SPACE if fitted else 0, 2)), 0
     for level in range(ends.size - 2, -1, -1):
         for rank in range(ends[level + 1], ends[level]):
-            place = places[rank] + columns + 3 + 2 * (places[rank] // columns)
-            ranks[place] = rank
-            _join(ranks, place, around, heights, parents, points, ring)
+            framed = places[rank] + columns + 3 + 2 * (places[rank] // columns)
+            ranks[framed] = rank
+            _join(ranks, framed, around, heights, parents, points, ring)
             roots[islands] = rank
             islands += 1
         islands = _keep_roots(roots, islands, parents)
@@ -141,11 +141,11 @@ def _keep_roots(roots, islands, parents):
 
 
 @kernel(inline="always")
-def _join(ranks, place, around, heights, parents, points, ring):
+def _join(ranks, framed, around, heights, parents, points, ring):
     """Join the point at a place with the islands of its neighbours."""
-    root, before = ranks[place], ranks[place + around[-1]] >= 0
+    root, before = ranks[framed], ranks[framed + around[-1]] >= 0
     for n in range(around.size):
-        rank = ranks[place + around[n]]
+        rank = ranks[framed + around[n]]
         # A neighbour that appeared next to another one is in the same island already.
         if rank >= 0 and not (before and n > 0):
             other = _root(parents, rank)

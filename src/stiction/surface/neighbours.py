@@ -37,7 +37,8 @@ def mean_height_correlations(
     across = _midpoints(min(cutoff, _LOBES * lobe_2), lobe_2 / _WAVES) if lobe_2 else np.zeros(1)
     zeta = np.hypot(along[:, None], across)
     density = sum(rms**2 / spectrum.variance * spectrum(zeta) for spectrum, rms in surfaces)
-    weighted = np.sinc(along / lobe_1) ** 2 * (density @ _weight_across(across, lobe_2))
+    weight_across = np.sinc(across / lobe_2) ** 2 if lobe_2 else np.ones(1)
+    weighted = np.sinc(along / lobe_1) ** 2 * (density @ weight_across)
     return np.cos(np.outer(np.arange(1, lags + 1), along * length)) @ weighted / weighted.sum()
 
 
@@ -45,8 +46,3 @@ def _midpoints(end, step):
     """Midpoints of cells of about a size between 0 and an end (n,) [rad m⁻¹]."""
     cells = int(np.ceil(end / step))
     return end / cells * (np.arange(cells) + 0.5)
-
-
-def _weight_across(across, lobe):
-    """Weight of waves across the strip (n,) [-]."""
-    return np.sinc(across / lobe) ** 2 if lobe else np.ones(1)

@@ -7,10 +7,11 @@ import pytest
 from matplotlib.colors import to_rgb
 from scipy.special import ndtr
 
-from stiction.answer.data import Answer, AnswerInAir, Cause, Step
+from stiction.answer.data import Answer, AnswerInAir, Between, Cause, Step, Unasked
 from stiction.report.answer import tables
 from stiction.report.answer.figures import ladder, risk
 from stiction.report.style import humidity_colour
+from stiction.stages.life.answers import Name
 
 SIZES = np.linspace(100e-6, 300e-6, 41)
 
@@ -69,7 +70,7 @@ def test_the_band_ends_where_the_simulation_no_longer_resolves_it():
     last = SIZES[np.argmax(high > 1e-3) - 1]  # next to the first size with a resolved end
     for drawn, first in ((replace(answered(), curve=floored), last), (answered(), SIZES[0])):
         (panel,) = risk({"C1": drawn}).axes
-        band, _of_legend = panel.collections
+        (band,) = panel.collections
         assert band.get_paths()[0].vertices[:, 0].min() == pytest.approx(1e6 * first)
 
 
@@ -77,15 +78,32 @@ def test_legends_are_below_all_panels_and_name_what_is_drawn_once():
     figure = risk({"C1": answered(), "C2": answered(build=np.nan, size=np.nan)})
     (common,) = figure.legends
     assert [text.get_text() for text in common.get_texts()] == [
-        "mean over all that is unknown",
-        "95 % band, where the simulation resolves it",
+        "mean; the worst 5 % count",
         "limit by simulation, exact inputs",
         "to build: allowed share, 95 % confidence",
         "stated size",
     ]
     for panel in figure.axes:
         airs = [text.get_text() for text in panel.get_legend().get_texts()]
-        assert airs == ["RH 0.44", "all airs, RH 0.92 decides"]
+        assert airs == ["RH 0.44", "all airs, RH 0.92 decides", "its 95 % band"]
+        drawn, (*_, shown) = panel.collections[0], panel.get_legend().legend_handles
+        np.testing.assert_array_equal(shown.get_facecolor(), drawn.get_facecolor()[0])
+
+
+def test_stricter_sizes_are_marked_at_the_allowed_fraction_and_stated_in_the_title():
+    between, dried = Between(0.8, 138e-6, 137e-6), Unasked(f"{Name.COLLAPSE}_water", "longest beam that stands", 90e-6)
+    (panel,) = risk({"C1": answered(between=between, unasked=(dried,))}).axes
+    (marks,) = (line for line in panel.lines if line.get_label() == "stricter sizes, in the titles")
+    np.testing.assert_allclose(marks.get_xydata(), [[138, 1e-3], [90, 1e-3]])
+    assert panel.get_xlim()[0] < 90 < 1e6 * SIZES[0], "the axis reaches them"
+    assert panel.get_title(loc="left").splitlines() == [
+        "C1, cantilever",
+        "stricter: 138 µm between these airs",
+        "(interpolated: state RH\N{NO-BREAK SPACE}0.8)",
+        "stricter: 90 µm if water dries on it",
+    ]
+    (without,) = risk({"C1": answered(between=Between(0.8, 140.4e-6, 140e-6))}).axes  # reads as the size to build
+    assert not any(line.get_marker() == "v" for line in without.lines)
 
 
 def test_the_axis_of_a_force_begins_at_zero_and_fractions_are_in_words():

@@ -85,13 +85,41 @@ def test_a_length_that_the_run_does_not_know_is_neither_inside_nor_outside():
     assert tables.counted([found]) == "No length of the run stands beside an estimate."
 
 
-def test_dry_air_has_a_reason_in_place_of_a_number_and_changes_no_other_air():
+def test_dry_air_has_its_own_estimate_and_changes_no_other_air():
     found, alone = dataset({0.0: safe(), 0.6: safe()}, planned(humidities=["dry", 0.6])), dataset({0.6: safe()})
-    assert found.refused.values.tolist() == ["dry air was not learnt", ""]
-    assert np.isnan(found.estimate.sel(humidity=0.0)).all()
+    dry = asked_as_in_file(humidities=(0.0,)).chosen
+    np.testing.assert_allclose(found.estimate.sel(humidity=0.0, share=1e-3), dry.length, rtol=1e-7)
     np.testing.assert_array_equal(found.estimate.sel(humidity=0.6), alone.estimate.sel(humidity=0.6))
-    assert tables.refusals(found) == ["Not known at once in dry air: dry air was not learnt."]
-    assert tables.refusals(alone) == []
+    assert float(found.estimate.sel(humidity=0.6, share=1e-3)) != dry.length
+    assert found.refused.values.tolist() == ["", ""]
+
+
+def test_air_that_was_not_learnt_has_a_reason_in_place_of_a_number():
+    found = dataset({0.6: safe(), 0.999: safe()})
+    assert found.refused.values[0] == ""
+    assert np.isnan(found.estimate.sel(humidity=0.999)).all()
+    (said,) = tables.refusals(found)
+    assert said.startswith("Not known at once at a relative humidity of 0.999: ")
+    assert tables.refusals(dataset({0.6: safe()})) == []
+
+
+def test_a_material_in_dry_air_has_its_hamaker_constant_among_the_inputs():
+    etched, wafer = {"like": "B2", "rms_nm": 3}, {"like": "Sub1", "rms_nm": 0.2}
+    sides = {name: side | {"material": "Hard"} for name, side in (("S", etched), ("T", wafer))}
+    of_pair = {"beam": "S", "substrate": "T", "gap_um": 20, "humidities": ["dry"]}
+    material = {"materials": {"Hard": {"hamaker_constant_zJ": {"water": 60, "dry": 250}}}}
+    device = {"devices": {"Lever": BEAM | {"humidities": ["dry"]}}}
+    found = []
+    for more in ({}, material):
+        surfaces = {name: {key: of[key] for key in of if more or key != "material"} for name, of in sides.items()}
+        graph = Graph(Plan(stiction.load(FILE, device, {"surfaces": surfaces, "pairs": {"mine": of_pair}}, more)))
+        found.append(dataset({0.0: safe()}, graph))
+    own, strong = found
+    assert np.all(strong.estimate < own.estimate)
+    assert float(strong.hamaker_constant) == pytest.approx(2.5e-19)
+    assert "hamaker_constant" not in own
+    (row, *_) = csv.DictReader(io.StringIO(tables.table({"Lever": strong}).csv))
+    assert float(row["hamaker_constant_zJ"]) == pytest.approx(250)
 
 
 def test_what_was_not_learnt_has_its_reason_in_all_airs_and_a_section_without_a_table():
@@ -136,7 +164,7 @@ def test_rows_of_the_table_have_all_inputs_from_which_the_estimate_follows():
     assert {cell for cell in table.cells["stuck"]} == {"1 in 100", "1 in 1000", "1 in 10 000"}
 
 
-def test_only_cantilevers_and_stoppers_in_humid_air_have_it():
+def test_only_cantilevers_and_stoppers_have_it():
     bridge = BEAM | {"kind": "bridge", "residual_stress_MPa": 50}
     stopper = {"kind": "stopper", "pair": "mine", "contact_um": [3, 3], "restoring_force_uN": 20, "humidities": [0.6]}
     dry = BEAM | {"humidities": ["dry"]}
@@ -145,10 +173,10 @@ def test_only_cantilevers_and_stoppers_in_humid_air_have_it():
     more = {"R": bridge, "S": stopper, "D": dry, "P": probe, "T": stopper | {"humidities": ["dry"]}}
     plan = Plan(stiction.load(FILE, {"devices": more}))
     graph = Graph(plan)
-    assert beside.estimated(plan, beside.LENGTHS) == ["Lever"]
-    assert beside.estimated(plan, beside.FORCES) == ["S"]
+    assert beside.estimated(plan, beside.LENGTHS) == ["D", "Lever"]
+    assert beside.estimated(plan, beside.FORCES) == ["S", "T"]
     read = {name: "estimate" in graph.job(f"devices/{name}.html").inputs for name in plan.devices.sections}
-    assert read == {"Lever": True, "R": False, "S": True, "D": False, "P": False, "T": False}
+    assert read == {"Lever": True, "R": False, "S": True, "D": True, "P": False, "T": True}
     without = Plan(stiction.load())
     assert not [
         job
@@ -195,7 +223,7 @@ def test_a_page_ends_with_the_estimate_beside_the_run():
 
 
 def test_a_stored_estimate_makes_the_same_table(tmp_path):
-    found = dataset({0.0: safe(), 0.6: safe()}, planned(humidities=["dry", 0.6]))
+    found = dataset({0.6: safe(), 0.999: safe()})
     storage.save(found, tmp_path / "a.nc", "device_estimate", {}, [])
     again = storage.load(tmp_path / "a.nc", "device_estimate")
     assert tables.table({"Lever": again}).csv == tables.table({"Lever": found}).csv

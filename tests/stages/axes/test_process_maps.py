@@ -63,6 +63,12 @@ def test_a_point_of_a_map_is_that_of_a_curve_with_the_other_surface_as_the_secon
         np.testing.assert_allclose(ours[name], along[name], rtol=1e-7)
 
 
+def test_points_at_the_ends_and_in_the_middle_of_both_axes_have_slopes(mapped):
+    settings = [mapped.results.graph.job(f"process/points/Bump_{number}").settings for number in range(35)]
+    with_slopes = [number for number, of_point in enumerate(settings) if "samples" in of_point]
+    assert with_slopes == [7 * row + column for row in (0, 2, 4) for column in (0, 3, 6)]
+
+
 @pytest.mark.slow
 def test_a_map_joins_all_its_points_with_slopes_by_both_laws(mapped):
     found = mapped.margins("Bump")

@@ -189,6 +189,10 @@ def test_tables_figures_and_pages_show_them(etched):
     curve, settings = etched.margins("Bump"), etched.settings()
     table = tables.of_processes({"Bump": curve}, [settings], {"Bump": [etched.law]})
     assert list(table.frame.value) == list(curve.value)
+    of_mean = np.sqrt((table.frame[["simulation_se", "law_se", "model_se"]] ** 2).sum(axis=1))
+    np.testing.assert_allclose(table.frame.margin_se, of_mean)
+    np.testing.assert_allclose(table.frame.margin_of_run_se, np.hypot(of_mean, table.frame.run_se))
+    assert np.all(table.frame.run_se > 0.1 * of_mean), "without this, both errors would be nearly the same"
     assert "Bump: " + etched.answers("Bump")[0] in table.caption
     for figure in (etched.plot(), etched.plot("Bump")):
         assert covering(figure) == []

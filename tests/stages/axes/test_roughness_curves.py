@@ -408,7 +408,7 @@ def test_the_kurtosis_stands_beside_every_skewness_in_sentences_tables_and_figur
     for found, axis, between in ((over_both, "yaxis", " "), (over_one, "xaxis", "\n")):
         draw = figures_roughness.roughness_map if "other" in found.dims else figures_roughness.roughness
         labels = [text.get_text() for text in getattr(draw(found).axes[0], axis).get_ticklabels()]
-        assert labels == [f"-1{between}(4)", f"0{between}(3)", f"0.5{between}(3.25)"]
+        assert labels == [f"−1{between}(4)", f"0{between}(3)", f"0.5{between}(3.25)"]
         table = tables.of_roughness({"S1": found})
         assert set(table.cells["kurtosis"]) == {"4", "3", "3.25"}
         assert "kurtosis" in table.caption

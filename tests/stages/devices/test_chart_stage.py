@@ -199,8 +199,11 @@ def drawn(asked, power, here, device, ground, wanted):
     return sticking.released(device, ground, lengths, np.inf)
 
 
-def between(power, device=C1, here=1.0):
-    """Chart at the humidity between, that of all sizes by finite elements, and the sizes that the first asked for."""
+def between(power, device=C1, here=1.0, error=0.0):
+    """Chart at the humidity between, that of all sizes by finite elements, and the sizes that the first asked for.
+
+    The power laws of the charts at other humidities have an error.
+    """
     tips = 2e-3 * np.exp(0.4 * np.random.default_rng(9).standard_normal(WANTED.beams))
     asked, ground, wanted = [], ground_dataset(device), replace(WANTED, device=device)
     contact = xr.Dataset() if device.opening.has_tip else None
@@ -209,6 +212,7 @@ def between(power, device=C1, here=1.0):
         patch.object(sticking, "release_beams", partial(drawn, asked, power, here)),
     ):
         nodes = [chart.compute(ground, replace(wanted, humidity=humidity), contact) for humidity in NODES]
+        nodes = [node.assign(power_law_error=error) for node in nodes]
         true = chart.compute(ground, wanted, contact)
         asked.clear()
         return chart.compute(ground, wanted, contact, nodes), true, asked
@@ -223,6 +227,11 @@ def test_between_humidities_one_size_is_released_and_the_others_follow_within_th
     for name in ("safe_length", "quantile"):
         assert_allclose(found[name], true[name], rtol=float(found.power_law_error) + 1e-3)
         assert_allclose(found[name][1], true[name][1], rtol=1e-12)
+
+
+def test_the_error_between_humidities_contains_that_of_the_power_laws_at_them():
+    errors = [float(between(lambda _: 0.8, error=error)[0].power_law_error) for error in (0.0, 0.003)]
+    assert errors[1] - errors[0] == pytest.approx(0.003)
 
 
 @pytest.mark.parametrize(("jump", "scatter"), [(0.1, 1.0), (0.0, 0.0)])

@@ -66,6 +66,7 @@ def test_a_tilted_stopper_is_answered_at_its_tilts_and_humidities_alone(stopper)
     tilted = stoppers.layout_tilted(settings, pull_off, np.array([3e-4, 5e-4]))
     view = explorer.tilted_view("S1", SECTION | STATED, tilted, stopper)
     tilt, humidity = view.grid.axes
+    assert view.grid.start["humidity"] == humidity.values[1], "the one that holds most"
     assert_allclose(np.tan(np.radians(tilt.values)), slopes, rtol=1e-5)
     for value, factor in zip(tilt.values, factors, strict=True):
         for k, rh in enumerate(humidity.values):

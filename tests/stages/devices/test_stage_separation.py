@@ -65,6 +65,12 @@ def test_strips_need_more_energy_so_that_beams_are_shorter_by_its_fourth_root(co
     assert list(found["shape"].values) == ["middle"]
 
 
+def test_strips_never_hold_longer_beams_fast_than_slowly(contacts, monkeypatch):
+    monkeypatch.setattr(curves, "fast_energies", lambda *air: 0.9 * curves.energies(*air))
+    found = fast_strips(contacts, WATER)
+    assert all(float(strips.factor) == 1 for strips in found.values())
+
+
 def wedges(resisting=3):
     """Contact of three tips that are smooth wedges on stiff ground, at two slopes; some find no ground."""
     grid, slopes, length = DistanceGrid(0.05e-9, 200, 60), np.array([0.05, 0.1]), 3e-7

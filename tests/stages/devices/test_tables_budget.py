@@ -10,6 +10,7 @@ from matplotlib.lines import Line2D
 from noted import noted
 from numpy.testing import assert_allclose
 
+from stiction.answer.data import Between
 from stiction.config.files import load
 from stiction.contact.correction import Correction, ElasticChange
 from stiction.contact.environment import Water
@@ -17,6 +18,7 @@ from stiction.devices.stoppers import stuck_patches
 from stiction.plan.plan import Plan
 from stiction.report.budget import figures as figures_budget
 from stiction.report.budget import tables as tables_budget
+from stiction.report.format import safe_size
 from stiction.report.style import DOUBLE, humidity_colours, legend_below, panels, save, styled
 from stiction.stages.devices.stoppers import Settings, layout, stuck_over
 
@@ -187,7 +189,7 @@ def test_beam_and_tip_have_panels_of_their_own():
         "(c) length that 1 in 1000 tips hold (arc)",
     ]
     (legend,) = figure.legends
-    assert [text.get_text() for text in legend.get_texts()] == ["RH 0.44", "RH 0.67"]
+    assert [text.get_text() for text in legend.get_texts()] == ["RH 0.44", "RH 0.67", "± standard error"]
 
 
 def test_text_of_a_budget_can_be_read_on_a_phone():
@@ -350,10 +352,23 @@ def test_marks_of_a_stopper_are_the_limits_of_its_table_inside_its_band():
 def test_a_stopper_shows_the_force_to_build_unless_a_limit_forbids_it(is_allowed):
     known = stopper_answer(STOPPERS["S1"], BUDGETS)
     answer = replace(known, forbidden=() if is_allowed else ("gap",))
-    force = f"{1e6 * known.build:.3g} µN"
+    force = safe_size(known.build, known.sought)
     above, below = figures_budget.stoppers({"S1": STOPPERS["S1"]}, {}, {"S1": answer}).axes
     texts = [[text.get_text() for text in panel.get_legend().get_texts()] for panel in (above, below)]
     assert (f"to build, {force}" in texts[0]) == (f"to build in the stated airs, {force}" in texts[1]) == is_allowed
+    assert "95 % band" in texts[0]
+
+
+@pytest.mark.parametrize("is_allowed", [True, False])
+def test_a_stopper_shows_the_larger_force_to_build_between_its_airs(is_allowed):
+    known = stopper_answer(STOPPERS["S1"], BUDGETS)
+    answer = replace(
+        known, between=Between(0.6, 1.5 * known.build, known.build), forbidden=() if is_allowed else ("gap",)
+    )
+    panel = figures_budget.stoppers({"S1": STOPPERS["S1"]}, {}, {"S1": answer}).axes[1]
+    label = f"between them, interpolated, RH 0.6: {safe_size(1.5 * known.build, known.sought)}"
+    marks = [line.get_xydata() for line in panel.lines if line.get_label() == label]
+    assert_allclose(marks, [[[0.6, 1.5e6 * known.build]]] if is_allowed else [])
 
 
 def test_the_largest_limit_of_a_stopper_is_marked_where_the_table_has_it():

@@ -8,7 +8,7 @@ from contextlib import suppress
 
 from stiction.command.output_streams import say
 from stiction.config.units import from_si
-from stiction.contact.air import DRY
+from stiction.contact.air import DRY, DRY_AIR, Air
 from stiction.estimate.answer import CHOSEN, FRACTIONS, Estimate, answer
 from stiction.estimate.force import Stopper
 from stiction.estimate.length import Impossible, NotLearnt
@@ -48,7 +48,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--contact", type=float, nargs=2, metavar="UM", help=words)
     words = "thickness and relative permittivity of the dielectric"
     parser.add_argument("--dielectric", type=float, nargs=2, metavar=("NM", "PERMITTIVITY"), help=words)
-    parser.add_argument("--rh", type=_humidity, nargs="+", metavar="RH", help="relative humidities, such as 0.45")
+    words = "relative humidities, such as 0.45, or dry"
+    parser.add_argument("--rh", type=_humidity, nargs="+", metavar="RH", help=words)
     parser.add_argument("--touchdowns", type=int, default=1, metavar="N", help="number of touchdowns (default: 1)")
 
 
@@ -81,8 +82,8 @@ def in_short(files: Sequence[str]) -> Iterator[str]:
     """Lines with the length or force to build of each device of some valid files that the estimate knows."""
     for name, question in _of_files(files).items():
         with suppress(NotLearnt):
-            said = chosen(answer(question, *known()), f" of {name}")
-            yield f"Estimate: {said}; stiction estimate {' '.join(files)} says more."
+            interval = chosen(answer(question, *known()), f" of {name}")
+            yield f"Estimate: {interval}; stiction estimate {' '.join(files)} says more."
 
 
 def main(words: Sequence[str]) -> int:
@@ -110,16 +111,16 @@ def _of_files_alone(arguments):
     """Questions of files without options of a device."""
     if stated := [name for name in (*OPTIONS, *_MORE) if getattr(arguments, name) not in (None, _DEFAULTS.get(name))]:
         raise ValueError(f"--{stated[0]} is for a device without a file: state it in {arguments.files[0]}")
-    if not (found := _of_files(arguments.files)):
+    if not (by_device := _of_files(arguments.files)):
         raise ValueError(f"{' '.join(arguments.files)} has no devices to estimate")
-    return found
+    return by_device
 
 
 def _of_files(files):
     """Questions of all devices of some files."""
     from stiction.config.reading import read  # imports the parser of YAML
 
-    return {name: one for file in files for name, one in questions(read(file), content()).items()}
+    return {name: question for file in files for name, question in questions(read(file), content()).items()}
 
 
 def _of_options(arguments, library):
@@ -139,8 +140,8 @@ def _of_options(arguments, library):
     if arguments.hurst is not None and arguments.hurst > 1:
         raise Impossible(f"--hurst must be at most 1, got {arguments.hurst}")
     sides = [surface({"like": LIKE} | entry, library), surface(library[OPPOSITE], library)]
-    of = of_area if arguments.contact else of_numbers
-    return of(_NAME, device, sides, averaged=arguments.like is None)
+    asked_of = of_area if arguments.contact else of_numbers
+    return asked_of(_NAME, device, sides, averaged=arguments.like is None)
 
 
 def _stated(arguments):
@@ -159,14 +160,15 @@ def _stated(arguments):
 def file_of(arguments: argparse.Namespace) -> str:
     """File with the device of some options, for a run."""
     entry, device = _stated(arguments)
-    air, kind = {"humidities": arguments.rh}, "stopper" if arguments.contact else "cantilever"
+    kind = "stopper" if arguments.contact else "cantilever"
+    air = {"humidities": [Air(each).name for each in arguments.rh]}
     pair = {"beam": "Mine", "substrate": OPPOSITE, "gap_um": arguments.gap or _GAP} | air
     return "\n".join(
         (
             "run: {pairs: [mine], studies: []}",
             f"surfaces:\n  Mine: {_in_yaml({'like': LIKE} | entry)}",
             f"pairs:\n  mine: {_in_yaml(pair)}",
-            f"devices:\n  Mine: {_in_yaml({'kind': kind, 'pair': 'mine'} | device)}",
+            f"devices:\n  Mine: {_in_yaml({'kind': kind, 'pair': 'mine'} | device | air)}",
         )
     )
 
@@ -179,9 +181,9 @@ def _in_yaml(entry):
 def _humidity(word):
     """Relative humidity of a word, which can be that for dry air."""
     try:
-        return 0.0 if word == DRY else float(word)
+        return DRY_AIR.humidity if word == DRY else float(word)
     except ValueError:
-        raise argparse.ArgumentTypeError(f"must be numbers above 0 and below 1, got {word}") from None
+        raise argparse.ArgumentTypeError(f"must be {DRY}, or numbers above 0 and below 1, got {word}") from None
 
 
 #: Options that a device needs, those of other devices, and these.
@@ -201,39 +203,41 @@ _NAME = "The device"
 _WORDS = {"um": ("length", "µm"), "uN": ("force", "µN")}
 
 
-def shown(found: Estimate) -> Iterator[str]:
+def shown(estimate: Estimate) -> Iterator[str]:
     """Lines of an answer."""
-    asked, (name, symbol) = found.question, _WORDS[found.question.unit]
+    asked, (name, symbol) = estimate.question, _WORDS[estimate.question.unit]
     left_open = ", typical surfaces stand for what is not stated" * any(asked.members)
-    yield f"{asked.name}: estimate at RH {found.humidity:g}, the worst air; stated inputs count as exact{left_open}"
+    where = f"{Air(estimate.humidity).where}, the worst air"
+    yield f"{asked.name}: estimate {where}; stated inputs count as exact{left_open}"
     yield f"  stuck            {f'{name} [{symbol}]':<15}90 %            95 %"
-    for row in found.rows:
+    for row in estimate.rows:
         both = ([_number(end, asked) for end in ends] for ends in row.intervals.values())
         ends = "    ".join(f"{low:>5} to {high:<5}" for low, high in both)
         yield f"  1 in {1 / row.fraction:<10.0f}  {_number(row.size, asked):>8}     {ends}"
-    if found.stuck is not None:
-        value, low, high = (_percent(part, asked.most) for part in found.stuck)
+    if estimate.stuck is not None:
+        value, low, high = (_percent(fraction, asked.most) for fraction in estimate.stuck)
         yield f"  At {_number(asked.size, asked)} {symbol}, {value} stick (95 %: {low} to {high})."
-    yield f"  {chosen(found)}."
+    yield f"  {chosen(estimate)}."
 
 
-def chosen(found: Estimate, of: str = "") -> str:
+def chosen(estimate: Estimate, subject: str = "") -> str:
     """Interval of the size for 1 in 1000, and the end to use."""
-    (low, high), asked = found.chosen.intervals["90"], found.question
+    (low, high), asked = estimate.chosen.intervals["90"], estimate.question
     least, most = _number(low, asked), _number(high, asked)
     safe = f"at least {most}" if isinstance(asked, Stopper) else f"at most {least}"
-    return f"1 in {1 / CHOSEN:.0f}{of} sticks between {least} and {most} {_WORDS[asked.unit][1]} (90 %): use {safe}"
+    symbol = _WORDS[asked.unit][1]
+    return f"1 in {1 / CHOSEN:.0f}{subject} sticks between {least} and {most} {symbol} (90 %): use {safe}"
 
 
 #: Largest fraction that is shown.
 _NEARLY_ALL = 0.99
 
 
-def _percent(part, most):
+def _percent(fraction, most):
     """Fraction in percent, between the smallest one with a length and the largest that is known."""
-    if part < FRACTIONS[-1]:
+    if fraction < FRACTIONS[-1]:
         return f"less than {100 * FRACTIONS[-1]:.4f} %"
-    return f"{'at least ' * (part >= most)}{float(f'{100 * min(part, _NEARLY_ALL):.2g}'):g} %"
+    return f"{'at least ' * (fraction >= most)}{float(f'{100 * min(fraction, _NEARLY_ALL):.2g}'):g} %"
 
 
 def _number(size: float, question: Question | Stopper) -> str:

@@ -1,7 +1,7 @@
 """Errors of the estimate on surfaces that were not learnt, and the intervals that follow from them."""
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -58,8 +58,8 @@ def tested(folder: Path, sets: str, modulus: float, score: float, processes: Pro
         if "changed" not in numbers or not np.isfinite(numbers["changed"]).all():
             continue
         state = states_of(point, numbers["airs"][:1], modulus)[0][FACTORS.index(1.0)]
-        true = _lengths_of(of_tips(numbers["changed"]), math.log(1.5))
-        yield _beside(point, true, score, lambda of=state, at=point: lengths(of, 1.0, *processes(at)))
+        true = lengths_of(of_tips(numbers["changed"]), math.log(1.5))
+        yield beside(point, true, score, lambda of=state, at=point: lengths(of, 1.0, *processes(at)))
 
 
 def tested_forces(folder: Path, sets: str, modulus: float, score: float, processes: Processes) -> Iterator[Tested]:
@@ -69,11 +69,11 @@ def tested_forces(folder: Path, sets: str, modulus: float, score: float, process
             continue
         patch, pressures = patches_of(point, numbers, modulus)[0], numbers["forces"][0].astype(float)
         changed = change_of(numbers).of(pressures)(pressures)
-        true = _lengths_of(of_forces(changed, patch), -math.log(patch.flooded_force))
-        yield _beside(point, true, score, lambda of=patch, at=point: reciprocals(of, *processes(at)))
+        true = lengths_of(of_forces(changed, patch), -math.log(patch.flooded_force))
+        yield beside(point, true, score, lambda of=patch, at=point: reciprocals(of, *processes(at)))
 
 
-def _beside(point, true, score, estimate):
+def beside(point: Point, true: Lengths, score: float, estimate: Callable[[], Lengths]) -> Tested:
     """Tested length of a point at a score."""
     try:
         found = estimate()
@@ -82,7 +82,7 @@ def _beside(point, true, score, estimate):
     return Tested(point.number, found.slope, true.at(score), found.at(score))
 
 
-def _lengths_of(quantities, shift):
+def lengths_of(quantities: Mapping[str, float], shift: float) -> Lengths:
     """Lengths by the quantities of tips or patches, whose logarithms are shifted."""
     return Lengths(tuple(quantities[name] + shift for name in NAMES[:3]), quantities["slope"])
 
@@ -146,12 +146,12 @@ def noise_of(folder: Path, sets: str, score: float) -> np.ndarray:
 def _noise_of_tips(slopes, score, rng):
     """Noise of the length of tips (n,)."""
     drawn = rng.choice(slopes, (_DRAWS, len(slopes)))
-    return float(np.std([math.log(_lengths_of(of_tips(each), 0.0).at(score)) for each in drawn]))
+    return float(np.std([math.log(lengths_of(of_tips(each), 0.0).at(score)) for each in drawn]))
 
 
 def _noise_of_strips(numbers, score, rng):
     """Noise of the length by the upper end of the change that a run applies at the slope of its tips."""
-    slope = 1 / _lengths_of(of_tips(numbers["changed"]), 0.0).at(score)
+    slope = 1 / lengths_of(of_tips(numbers["changed"]), 0.0).at(score)
     near = int(np.argmin(np.abs(np.log(numbers["slope"] / slope))))
     forces = [numbers[name][:, near] for name in ("full", "summits")]
     ratios = []

@@ -15,7 +15,9 @@ import numpy as np
 from stiction.config.reading import read
 from stiction.config.units import from_si
 from stiction.estimate.answer import CONFIDENCES, answer, difficulty
+from stiction.estimate.learning import dry_rows
 from stiction.estimate.learning.design import SurfaceLaw
+from stiction.estimate.learning.dry import CONSTANTS, DryEffort
 from stiction.estimate.learning.errors import coverage, noise_of, scores, tested, tested_forces
 from stiction.estimate.length import NotLearnt
 from stiction.estimate.question import questions
@@ -37,28 +39,33 @@ SETS = {
 _HEAD = "| surfaces | number | refused | mean [%] | rms [%] | largest [%] | half [%] | inside 90 % | inside 95 % |"
 #: Words before both tables of drawn surfaces.
 _OF_LENGTHS = (
-    "`stiction estimate` knows cantilevers and stoppers of polysilicon in humid air at 300 K, and refuses all else. "
-    "A bridge needs energies and finite elements of its middle as well. Dry air has no film, and full contact of its "
-    "own. Below are lengths for 1 in 1000 beside those of drawn surfaces that it has not learnt, with tips changed by "
-    "full contact as in a run, on strips of at most 12 µm. The error is the logarithm of the latter over the estimate, "
-    "negative on the unsafe side. Half: median of half of the interval of 90 %. In brackets: 95 % range of the share "
-    "inside."
+    "`stiction estimate` knows cantilevers and stoppers of polysilicon, in humid air at 300 K and in dry air, and "
+    "refuses all else. A bridge needs energies and finite elements of its middle as well. Below are lengths for 1 in "
+    "1000 beside those of drawn surfaces that it has not learnt, with tips changed by full contact as in a run, on "
+    "strips of at most 12 µm. The error is the logarithm of the latter over the estimate, negative on the unsafe side. "
+    "Half: median of half of the interval of 90 %. In brackets: 95 % range of the share inside."
 )
 _OF_FORCES = (
     "The same for forces of stoppers, of the logarithm of 1/force, so that it is negative on the unsafe side here too:"
 )
+_IN_DRY_AIR = (
+    "Lengths in dry air, at Hamaker constants of {:g} to {:g} zJ, beside tips changed by {} strips in full contact at "
+    "each slope, with the error that a run would reach:"
+)
+_FORCES_IN_DRY_AIR = "Forces in dry air, beside patches changed by {} strips of 3 µm in full contact:"
 
 
 def lines(folder: Path) -> Iterator[str]:
     """Lines of the tables of drawn surfaces."""
-    table, *tips = known()
-    stoppers = table["stoppers"]
-    of_forces = [Surrogate(**stoppers[name]) for name in ("forces", "full")]
-    for words, test, errors, processes in (
-        (_OF_LENGTHS, tested, table, tips),
-        (_OF_FORCES, tested_forces, stoppers, of_forces),
+    table, dry, (of_tips, of_patches) = content(), content()["dry"], DryEffort.strips
+    for words, test, errors, first in (
+        (_OF_LENGTHS, tested, table, "tips"),
+        (_OF_FORCES, tested_forces, table["stoppers"], "forces"),
+        (_IN_DRY_AIR.format(*CONSTANTS, of_tips), dry_rows.tested, dry, "tips"),
+        (_FORCES_IN_DRY_AIR.format(of_patches), dry_rows.tested_forces, dry["stoppers"], "forces"),
     ):
         yield from (words, "", _HEAD, "|---|---|---|---|---|---|---|---|---|")
+        processes = [Surrogate(**errors[name]) for name in (first, "full")]
         for name, of_set in SETS.items():
             learnt = table["modulus"], errors["tested_score"], lambda _, of=processes: of
             if found := list(test(folder, name, *learnt)):
@@ -72,10 +79,10 @@ def _of_noise(folder, score):
     if len(noise := noise_of(folder, f"decide_{SurfaceLaw.TYPICAL}", score)):
         rms, exact = 100 * np.sqrt((noise**2).mean(axis=0)), 100 * _HALF * np.median(noise[:, 0])
         yield (
-            f"Of the errors of lengths in the first row, {rms[0]:.1f} % rms are noise of the eight strips in full "
-            f"contact of a run, and {rms[1]:.1f} % of the drawn tips, by the bootstrap. An exact estimate would still "
-            f"have half an interval of {exact:.0f} %, for it errs beside a run that errs. Intervals are in proportion "
-            "to the scatter of the tips: they are narrow in wet air and on smooth surfaces."
+            f"Of the errors of lengths in the first row of all, {rms[0]:.1f} % rms are noise of the eight strips in "
+            f"full contact of a run, and {rms[1]:.1f} % of the drawn tips, by the bootstrap. An exact estimate would "
+            f"still have half an interval of {exact:.0f} %, for it errs beside a run that errs. Intervals are in "
+            "proportion to the scatter of the tips: they are narrow in wet air and on smooth surfaces."
         )
         yield ""
 

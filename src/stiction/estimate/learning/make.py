@@ -14,8 +14,9 @@ import numpy as np
 from stiction.config.reading import paper
 from stiction.config.units import to_si
 from stiction.constants import WATER_MOLAR_VOLUME, WATER_SURFACE_ENERGY
+from stiction.estimate import dry as of_dry_air
 from stiction.estimate.answer import CHOSEN, CONFIDENCES
-from stiction.estimate.learning import patches
+from stiction.estimate.learning import dry, dry_patches, dry_rows, patches
 from stiction.estimate.learning.design import FILMS, SurfaceLaw
 from stiction.estimate.learning.design import SIDES as SIDES_OF_PATCHES
 from stiction.estimate.learning.errors import Tested, conformal, rest_of, scores, tested, tested_forces
@@ -61,10 +62,30 @@ def table_of(folder: Path) -> dict[str, Any]:
         "tips": tips.content,
         "full": full.content,
         "stoppers": stoppers_of(folder, modulus),
+        "dry": in_dry_air(folder, modulus),
     }
     table |= errors_of(tested, folder, modulus, tips, full)
     control = {"slopes": control_of_slopes(), "forces": control_of_forces(), "patches": control_of_patches()}
     return table | {"control": control}
+
+
+def in_dry_air(folder: Path, modulus: float) -> dict[str, Any]:
+    """Part of the table about dry air, as the whole one."""
+    tips = fitted(dry_rows.rows_of_tips(folder, "learn", modulus), "at_2", range(len(of_dry_air.OF_TIPS)))
+    full = fitted(dry_rows.rows_of_full(folder, "learn", modulus), "ratio", dry_rows.OF_FULL, 90)
+    forces = fitted(dry_rows.rows_of_patches(folder, "learn", modulus), "at_2", range(len(of_dry_air.OF_PATCHES)))
+    ratios = fitted(dry_rows.rows_of_ratios(folder, "learn", modulus), "ratio", dry_rows.OF_RATIO, 90)
+    stoppers = {"sides": SIDES_OF_PATCHES, "coordinates": of_dry_air.OF_PATCHES}
+    stoppers |= {"forces": forces.content, "full": ratios.content}
+    stoppers |= errors_of(dry_rows.tested_forces, folder, modulus, forces, ratios)
+    own = {"sets": {name: vars(effort) for name, effort in dry.SETS.items()}, "tips": tips.content}
+    own |= {
+        "coordinates": of_dry_air.OF_TIPS,
+        "full": full.content,
+        "stoppers": stoppers,
+        "control": dry.control() | dry_patches.control(),
+    }
+    return own | errors_of(dry_rows.tested, folder, modulus, tips, full)
 
 
 def stoppers_of(folder: Path, modulus: float) -> dict[str, Any]:

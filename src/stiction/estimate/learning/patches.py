@@ -31,7 +31,7 @@ from stiction.streams import stream
 #: Folder of the patches beside the sets of the tips.
 FOLDER = "patches"
 #: Name of the device.
-_DEVICE = "S"
+DEVICE = "S"
 #: Sides of the patches on surfaces of the paper [µm].
 _OF_PAPER = (3.0, 3.0)
 #: Width of strips in full contact [m], and relative error of the ratio of means for which strips are drawn.
@@ -47,7 +47,7 @@ def base() -> dict[str, Any]:
             "run": {"pairs": [], "studies": []},
             "surfaces": {"S": {"rms_nm": 3, "like": "B2"}, "T": {"rms_nm": 0.2, "like": "Sub1"}},
             "pairs": {PAIR: pair},
-            "devices": {_DEVICE: device | {"humidities": HUMIDITIES}},
+            "devices": {DEVICE: device | {"humidities": HUMIDITIES}},
         }
     )
 
@@ -63,13 +63,13 @@ def sides_of(point: Point, seed: int, law: SurfaceLaw) -> tuple[float, float]:
 def plan_of(point: Point, sides: tuple[float, float], valid: dict[str, Any]) -> Plan:
     """Plan of a point under a patch [µm], from a valid configuration with one pair and one device."""
     surfaces = valid["surfaces"] | dict(zip("ST", point.sides, strict=True))
-    device = valid["devices"][_DEVICE] | {"contact_um": list(sides)}
-    return Plan(valid | {"surfaces": surfaces, "devices": {_DEVICE: device}})
+    device = valid["devices"][DEVICE] | {"contact_um": list(sides)}
+    return Plan(valid | {"surfaces": surfaces, "devices": {DEVICE: device}})
 
 
 def forces_of(point: Point, plan: Plan, heights: np.ndarray, number: int, seed: int) -> np.ndarray:
     """Pull-off pressures of a number of patches on summits, in films of some heights [m], (films, number) [Pa]."""
-    patch = patch_of(plan, Case(case_id(_DEVICE, HUMIDITIES[0])))
+    patch = patch_of(plan, Case(case_id(DEVICE, HUMIDITIES[0])))
     at = At(**{name: str(value) for name, value in patch._asdict().items()})
     settings = replace(in_si(Settings, GROUND.settings(plan, at, number)), seed=seed)
     found, water = contact.compute(surfaces_of(plan), f"estimate{point.number}", "NG", settings), water_of(plan)
@@ -104,4 +104,4 @@ def computed(point: Point, name: str, valid: dict[str, Any]) -> dict[str, Any]:
 
 
 if __name__ == "__main__":
-    main(base(), computed, Path(sys.argv[1]) / FOLDER, *sys.argv[2:])
+    main(base(), computed, Path(sys.argv[1]) / FOLDER, SETS, *sys.argv[2:])

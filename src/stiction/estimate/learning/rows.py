@@ -1,6 +1,6 @@
 """Rows of the design: coordinates and learnt quantities from the files of `stiction.estimate.learning.training`."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -15,7 +15,7 @@ from stiction.devices.tail import fit_tail
 from stiction.estimate.learning.design import Point
 from stiction.estimate.learning.fit import DesignRows
 from stiction.estimate.learning.patches import FOLDER
-from stiction.estimate.learning.training import FACTORS, SETS
+from stiction.estimate.learning.training import FACTORS, SETS, TrainingEffort
 from stiction.estimate.length import NAMES, SCORES
 from stiction.estimate.state import Film, PatchState, TipState
 from stiction.estimate.statistics import of_pair
@@ -26,9 +26,11 @@ _SET = 10_000
 PART, FEW = 0.2, 10
 
 
-def stored(folder: Path, start: str) -> Iterator[tuple[Point, dict[str, Any]]]:
+def stored(
+    folder: Path, start: str, sets: Mapping[str, TrainingEffort] = SETS
+) -> Iterator[tuple[Point, dict[str, Any]]]:
     """Points of all sets of a purpose that are computed, with their numbers, each under a number of its own."""
-    for k, (name, effort) in enumerate(SETS.items()):
+    for k, (name, effort) in enumerate(sets.items()):
         for point in effort.all if name.startswith(start) else ():
             if (file := folder / name / f"{point.number:04}.npz").exists():
                 with np.load(file) as numbers:
@@ -57,18 +59,23 @@ def of_tips(slopes: np.ndarray) -> dict[str, float]:
     return dict(zip(NAMES, (first, second, line.logarithm(ndtr(SCORES[2])), line.slope), strict=True))
 
 
-def rows_of_tips(folder: Path, name: str, modulus: float) -> DesignRows:
-    """Rows of all tips of a set on summits."""
-    coordinates, values, surface, noise = [], [], [], []
-    for point, numbers in stored(folder, name):
-        for states, slopes in zip(states_of(point, numbers["airs"], modulus), numbers["slopes"], strict=True):
-            for state, of_beam in zip(states, slopes, strict=True):
-                coordinates.append(state.coordinates)
-                values.append(of_tips(of_beam / state.flooded_slope))
-                surface.append(point.number)
-                noise.append(values[-1]["slope"] / len(of_beam) ** 0.5)
+def rows_of(entries: Iterable[tuple[int, Sequence[float], np.ndarray]]) -> DesignRows:
+    """Rows of quantities of tips or patches, from numbers of surfaces, coordinates, and values over those of flats."""
+    surface, coordinates, relative = zip(*entries, strict=True)
+    values = [of_tips(each) for each in relative]
+    noise = [row["slope"] / len(each) ** 0.5 for row, each in zip(values, relative, strict=True)]
     columns = {key: np.array([row[key] for row in values]) for key in NAMES}
     return DesignRows(np.array(coordinates), columns, np.array(surface), np.array(noise))
+
+
+def rows_of_tips(folder: Path, name: str, modulus: float) -> DesignRows:
+    """Rows of all tips of a set on summits."""
+    return rows_of(
+        (point.number, state.coordinates, of_beam / state.flooded_slope)
+        for point, numbers in stored(folder, name)
+        for states, slopes in zip(states_of(point, numbers["airs"], modulus), numbers["slopes"], strict=True)
+        for state, of_beam in zip(states, slopes, strict=True)
+    )
 
 
 #: Coordinates that the change by full contact depends on: ASSUME: no others. Few points have it.
@@ -107,20 +114,21 @@ def patches_of(point: Point, numbers: Mapping[str, Any], modulus: float) -> list
 
 def of_forces(pressures: np.ndarray, patch: PatchState) -> dict[str, float]:
     """Quantities of a patch from pull-off pressures (n,) [Pa]."""
-    return of_tips(pressures.astype(float) * patch.area / patch.flooded_force)
+    return of_tips(_relative(pressures, patch))
+
+
+def _relative(pressures, patch):
+    """Pull-off forces of a patch over that of flooded flats (n,)."""
+    return pressures.astype(float) * patch.area / patch.flooded_force
 
 
 def rows_of_patches(folder: Path, name: str, modulus: float) -> DesignRows:
     """Rows of all patches of a set on summits."""
-    coordinates, values, surface, noise = [], [], [], []
-    for point, numbers in stored(folder / FOLDER, name):
-        for patch, pressures in zip(patches_of(point, numbers, modulus), numbers["forces"], strict=True):
-            coordinates.append(patch.coordinates)
-            values.append(of_forces(pressures, patch))
-            surface.append(point.number)
-            noise.append(values[-1]["slope"] / len(pressures) ** 0.5)
-    columns = {key: np.array([row[key] for row in values]) for key in NAMES}
-    return DesignRows(np.array(coordinates), columns, np.array(surface), np.array(noise))
+    return rows_of(
+        (point.number, patch.coordinates, _relative(pressures, patch))
+        for point, numbers in stored(folder / FOLDER, name)
+        for patch, pressures in zip(patches_of(point, numbers, modulus), numbers["forces"], strict=True)
+    )
 
 
 #: Coordinates that the change of forces depends on, as surfaces that are left out say. ASSUME: no others.

@@ -6,7 +6,7 @@ Every point is a file, so that a stopped run goes on where it was:
 """
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -188,10 +188,11 @@ def computed(point: Point, name: str, valid: dict[str, Any]) -> dict[str, Any]:
 Computed = Callable[[Point, str, dict[str, Any]], dict[str, Any]]
 
 
-def train(folder: Path, name: str, chosen: range, valid: dict[str, Any], compute: Computed) -> None:
+def train(folder: Path, all_points: list[Point], chosen: range, valid: dict[str, Any], compute: Computed) -> None:
     """Compute all missing points of a set among the chosen ones."""
-    for point in SETS[name].all:
-        target = folder / name / f"{point.number:04}.npz"
+    name = folder.name
+    for point in all_points:
+        target = folder / f"{point.number:04}.npz"
         if point.number in chosen and not target.exists():
             with without_progress():
                 save(compute(point, name, valid), target)
@@ -203,11 +204,19 @@ def save(numbers: dict[str, Any], target: Path) -> None:
         np.savez(file, **numbers)
 
 
-def main(valid: dict[str, Any], compute: Computed, folder: Path, name: str = "", *ends: str) -> None:
+def main(
+    valid: dict[str, Any],
+    compute: Computed,
+    folder: Path,
+    sets: Mapping[str, TrainingEffort],
+    name: str = "",
+    *ends: str,
+) -> None:
     """Compute all sets, or some points of one."""
-    for each in [name] if name else SETS:
-        train(folder, each, range(*map(int, ends)) if ends else range(SETS[each].points), valid, compute)
+    for each in [name] if name else sets:
+        chosen = range(*map(int, ends)) if ends else range(sets[each].points)
+        train(folder / each, sets[each].all, chosen, valid, compute)
 
 
 if __name__ == "__main__":
-    main(base(), computed, Path(sys.argv[1]), *sys.argv[2:])
+    main(base(), computed, Path(sys.argv[1]), SETS, *sys.argv[2:])

@@ -2,6 +2,7 @@
 
 import textwrap
 from collections.abc import Mapping
+from itertools import chain
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -16,6 +17,7 @@ from stiction.report.answer import tables, words
 from stiction.report.format import safe_size
 from stiction.report.style import (
     BUILD,
+    DOUBLE,
     OUTLINED,
     SINGLE,
     at_most_double,
@@ -26,6 +28,7 @@ from stiction.report.style import (
     legend_below,
     legend_outside,
     letter_lines,
+    page_width,
     panels,
     styled,
 )
@@ -39,6 +42,10 @@ _ROW, _AROUND, _PANEL = 0.42, 1.3, 3.4
 _STUCK, _LOWEST = "P(stuck) [–]", 1 / 30
 #: Widest label of a step [characters].
 _WIDE = 26
+#: Colour and marker of sizes that are stricter than the size to build.
+_STRICTER = {"color": "black", "marker": "v", "linestyle": "", "markersize": 6}
+#: Most characters of a line above one of three panels.
+_LINE = 38
 #: Place of the label of a fraction.
 _LABEL = {"xycoords": ("axes fraction", "data"), "va": "bottom", "fontsize": 7, "path_effects": OUTLINED}
 
@@ -107,9 +114,22 @@ def risk(answers: Mapping[str, Answer]) -> Figure:
     for panel, answer in zip(columns[:, 0], answers.values(), strict=True):
         if answer.pull_offs:
             panel.set_ylabel(f"{answer.sought.fraction} [–]")
-    letter_lines(lines, [f"{name}, {answer.kind}" for name, answer in answers.items()])
+    letter_lines(lines, [_title(name, answer) for name, answer in answers.items()])
     _explain(figure, columns[:, 0])
     return figure
+
+
+def _title(name, answer):
+    """Name and kind of a device, and below it the sizes that are stricter than the size to build."""
+    stricter = [] if words.is_forbidden(answer) else words.stricter(answer)
+    lines = [_wrapped(f"stricter: {size}") for size in stricter]
+    return "\n".join([f"{name}, {answer.kind}", *chain.from_iterable(lines)])
+
+
+def _wrapped(line):
+    """Line above one of three panels, or above one on a page, as lines that fit there, with a humidity whole."""
+    fitting = int(_LINE * page_width(DOUBLE / 3) / (DOUBLE / 3))
+    return textwrap.wrap(line.replace("RH ", "RH\N{NO-BREAK SPACE}"), fitting)
 
 
 def _stuck(panel: Axes, answer):
@@ -128,19 +148,30 @@ def _stuck(panel: Axes, answer):
     colour, decides = humidity_colour(answer.together.humidity), Air(answer.together.humidity).words
     label_of_airs = f"all airs, {decides} decides" if len(answer.airs) > 1 and np.isfinite(answer.share) else decides
     panel.plot(sizes, expected, color=colour, linewidth=1.6, label=label_of_airs)
+    style = {"color": colour, "alpha": 0.2, "linewidth": 0}
+    panel.fill_between(sizes, *band, where=_resolved(band[1]), label="its 95 % band", **style)
     legend_below(panel, panel.get_legend_handles_labels()[0])
-    style = {"alpha": 0.2, "linewidth": 0}
-    panel.fill_between(sizes, *band, where=_resolved(band[1]), color=colour, **style)
-    panel.plot([], [], color="0.3", linewidth=1.6, label="mean over all that is unknown")
-    panel.fill_between([], [], [], color="0.3", **style, label="95 % band, where the simulation resolves it")
+    panel.plot([], [], color="0.3", linewidth=1.6, label="mean; the worst 5 % count")
     if np.isfinite(answer.share):
         panel.axhline(answer.share, color="0.4", linestyle=":", linewidth=0.8)
-        panel.annotate("allowed", (0.99, answer.share), ha="right", **_LABEL)
+        at, side = (0.01, "left") if answer.sought.more_is_better else (0.99, "right")  # clear of marks
+        panel.annotate("allowed", (at, answer.share), ha=side, **_LABEL)
     _size_to_build(panel, answer, scale)
+    stricter = _stricter(panel, answer, scale)
     lowest = _LOWEST * np.nan_to_num(answer.share, nan=UNLIKELY)
-    left = 0 if answer.sought.more_is_better else sizes.min()
-    panel.set(yscale="log", xlim=(left, sizes.max()), ylim=(lowest, 1.3))
+    left = 0 if answer.sought.more_is_better else min([sizes.min(), *(0.98 * size for size in stricter)])
+    panel.set(yscale="log", xlim=(left, max([sizes.max(), *(1.02 * size for size in stricter)])), ylim=(lowest, 1.3))
     panel.yaxis.set_major_formatter(lambda share, _: "all" if share == 1 else one_in(share))
+
+
+def _stricter(panel, answer, scale):
+    """Marks of the sizes that are stricter than the size to build, at the allowed fraction; these sizes."""
+    beside = [one.size for one in (answer.between, *answer.unasked) if one]
+    build = safe_size(answer.build, answer.sought)
+    sizes = [size / scale for size in beside if safe_size(size, answer.sought) != build]  # as they are stated
+    if sizes:
+        panel.plot(sizes, [answer.share] * len(sizes), **_STRICTER, label="stricter sizes, in the titles")
+    return sizes
 
 
 def _resolved(upper):

@@ -65,7 +65,10 @@ def change(answer: Answer, section: Mapping[str, Any]) -> str:
     if answer.sought.more_is_better:
         if not np.isfinite(answer.build):
             return "Compute more patches: contact.samples."
-        return "Nothing." if answer.is_enough_between else f"A restoring force of {words.to_build(answer)}."
+        if answer.is_enough and not answer.is_enough_between:
+            safe, air = answer.in_words(answer.between.safe), f"{answer.between.humidity:.2g}"
+            return f"A restoring force of {safe} suffices between these airs, too; state RH {air} to know it better."
+        return "Nothing." if answer.is_enough else f"A restoring force of {words.to_build(answer)}."
     if section.get("residual_stress_MPa", 0):
         return (
             "A thicker beam, a wider gap or more tension lets longer bridges release; key chart computes the first two."

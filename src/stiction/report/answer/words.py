@@ -138,7 +138,7 @@ def sign_of(answer: Answer) -> tuple[str, str]:
     if answer.verdict is Verdict.NONE:
         return ("bad", NO_NUMBER) if is_forbidden(answer) else ("open", "Not known")
     if answer.verdict is Verdict.SAFE and not answer.is_enough_between:
-        return "open", f"{_SIGNS[answer.sought.name][Verdict.SAFE][1]} in these airs, not between them"
+        return "open", f"{_SIGNS[answer.sought.name][Verdict.SAFE][1]} in these airs, perhaps not between them"
     return _SIGNS[answer.sought.name][answer.verdict]
 
 
@@ -163,9 +163,9 @@ def to_build(answer: Answer) -> str:
 
 
 def stricter(answer: Answer) -> list[str]:
-    """Stricter sizes of airs between the stated ones, and of what nothing that is stated asks for."""
+    """Stricter sizes of airs between the stated ones, which are interpolated, and of what nothing stated asks for."""
     at = answer.between
-    beside = [(at.size, f"between these airs (RH {at.humidity:.2g})")] if at else []
+    beside = [(at.size, f"between these airs (interpolated: state RH {at.humidity:.2g})")] if at else []
     beside += [(one.size, _unless(one)) for one in answer.unasked]
     return [f"{safe_size(size, answer.sought)} {unless}" for size, unless in beside if _is_stricter(answer, size)]
 

@@ -81,7 +81,7 @@ SIZES = {
 _TITLE = "The estimate at once beside the run"
 _MISSING = "the estimate refuses this air, or too few of the simulated devices stick for a size"
 #: Units of the inputs of the estimate, for those that have one.
-_SIZES = dict.fromkeys(("thickness", "gap", "width"), "um")
+_SIZES = dict.fromkeys(("thickness", "gap", "width"), "um") | {"hamaker_constant": "zJ"}
 _OF_SIDES = {"rms": "nm", "skewness": "", "kurtosis": "", "plateau": "nm4", "floor": "nm4"}
 _OF_SIDES |= dict.fromkeys(("corner", "cutoff"), "rad_per_um")
 #: Words by whether the size of the run is inside the interval of the estimate.
@@ -114,23 +114,26 @@ def _rows(device, dataset) -> Iterator[dict[str, Any]]:
     for air in dataset.humidity.values:
         of_air, is_in = dataset.sel(humidity=air), inside.sel(humidity=air)
         for share in dataset.share.values:
-            one, known = of_air.sel(share=share), float(is_in.sel(share=share))
-            numbers = {key: from_si(float(one[name]), sizes.unit) for key, name in sizes.keys.items()}
-            said = {"inside": "" if np.isnan(known) else _INSIDE[bool(known)], "refused": str(of_air.refused.values)}
-            yield {"device": device, "relative_humidity": float(air), "share": float(share)} | numbers | said | inputs
+            at_share, within = of_air.sel(share=share), float(is_in.sel(share=share))
+            numbers = {key: from_si(float(at_share[name]), sizes.unit) for key, name in sizes.keys.items()}
+            words = {
+                "inside": "" if np.isnan(within) else _INSIDE[bool(within)],
+                "refused": str(of_air.refused.values),
+            }
+            yield {"device": device, "relative_humidity": float(air), "share": float(share)} | numbers | words | inputs
 
 
 def _inputs(dataset):
     """Inputs of the estimate in the units of a configuration, none where it refuses the configuration."""
     if "side" not in dataset.dims:
         return {}
-    own = {f"{name}_{unit}": (dataset[name], unit) for name, unit in _SIZES.items() if name in dataset}
+    numbers = {f"{name}_{unit}": (dataset[name], unit) for name, unit in _SIZES.items() if name in dataset}
     for direction in dataset.direction.values if "contact" in dataset else ():
-        own[f"contact_{direction}_um"] = dataset.contact.sel(direction=direction), "um"
+        numbers[f"contact_{direction}_um"] = dataset.contact.sel(direction=direction), "um"
     for side in dataset.side.values:
         of_side = dataset.sel(side=side)
-        own |= {f"{side}_{name}_{unit}".rstrip("_"): (of_side[name], unit) for name, unit in _OF_SIDES.items()}
-    return {key: _as_stated(float(value), unit) for key, (value, unit) in own.items()}
+        numbers |= {f"{side}_{name}_{unit}".rstrip("_"): (of_side[name], unit) for name, unit in _OF_SIDES.items()}
+    return {key: _as_stated(float(value), unit) for key, (value, unit) in numbers.items()}
 
 
 def _as_stated(value, unit):
@@ -141,16 +144,18 @@ def _as_stated(value, unit):
 def counted(datasets: Sequence[xr.Dataset], sizes: Sizes = SIZES["length"]) -> str:
     """How many sizes of runs are outside the intervals of the estimate, in words."""
     inside = np.concatenate([is_inside(dataset).values.ravel() for dataset in datasets])
-    known = inside[~np.isnan(inside)]
-    if not known.size:
+    judged = inside[~np.isnan(inside)]
+    if not judged.size:
         return f"No {sizes.name} of the run stands beside an estimate."
-    return f"{known.size - int(known.sum())} of {known.size} {sizes.name}s are outside the interval of {CONFIDENCE} %."
+    return (
+        f"{judged.size - int(judged.sum())} of {judged.size} {sizes.name}s are outside the interval of {CONFIDENCE} %."
+    )
 
 
 def refusals(dataset: xr.Dataset) -> list[str]:
     """Why the estimate refuses some airs, in words."""
     by_reason = dataset.refused.to_series().groupby(dataset.refused.values, sort=False).groups
-    return [f"Not known at once {airs(list(of))}: {reason}." for reason, of in by_reason.items() if reason]
+    return [f"Not known at once {airs(list(rhs))}: {reason}." for reason, rhs in by_reason.items() if reason]
 
 
 def section(dataset: xr.Dataset) -> Section:
@@ -159,8 +164,8 @@ def section(dataset: xr.Dataset) -> Section:
         return Section(_TITLE, refusals(dataset))
     sizes = sizes_of(dataset)
     cells = Table.of(_rows("", dataset), "", HUMIDITY | sizes.columns).cells
-    said = [" ".join([sizes.caption, counted([dataset], sizes)]), *refusals(dataset)]
-    return Section(_TITLE, said, cells, missing=_MISSING)
+    sentences = [" ".join([sizes.caption, counted([dataset], sizes)]), *refusals(dataset)]
+    return Section(_TITLE, sentences, cells, missing=_MISSING)
 
 
 def inputs(plan: Any, device: str) -> dict[str, str]:

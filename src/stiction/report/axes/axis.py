@@ -65,19 +65,19 @@ class Axis:
         return [f"{self.text(low)} to {self.text(high)}{self.unit}" for low, high in ends if np.isfinite(low)]
 
 
-def axes_of(found: xr.Dataset) -> list[Axis]:
+def axes_of(curves: xr.Dataset) -> list[Axis]:
     """Axes of a dataset: along its curves and, of a map, from curve to curve."""
     named = {**_QUANTITIES, **_VARIABLES}
-    return [_axis(found, name, dimension) for attr, dimension in named.items() if (name := found.attrs.get(attr, ""))]
+    return [_axis(curves, name, dimension) for attr, dimension in named.items() if (name := curves.attrs.get(attr, ""))]
 
 
-def _axis(found, name, dimension):
+def _axis(curves, name, dimension):
     """Axis of a dataset along a dimension."""
-    values = np.atleast_1d(found[dimension].values)
+    values = np.atleast_1d(curves[dimension].values)
     if name not in ROUGHNESSES:
         return Axis(name, dimension, process.words_of(name), f" {process.unit_of(name)}", values)
     quantity = ROUGHNESSES[name]
-    words_of_it = f"{quantity.words} of {found.attrs['surface']}"
+    words_of_it = f"{quantity.words} of {curves.attrs['surface']}"
     return Axis(name, dimension, words_of_it, quantity.unit, values, quantity.scale)
 
 
@@ -95,7 +95,7 @@ def notes(curve: xr.Dataset) -> Iterator[str]:
             air = f" ({Air(humidity).words})" if axis.is_quantity else ""
             for value in curve[axis.dimension].values:
                 text = str(curve[name].sel({"humidity": humidity, axis.dimension: value}).values)
-                if said := words.joined(of_text(text)) if name == "flagged" else text:
-                    places.setdefault(said.rstrip("."), []).append(axis.at(value) + air)
-        for said, at in places.items():
-            yield f"{begins} the {axis.words} is {', '.join(dict.fromkeys(at))}: {said}."
+                if sentence := words.joined(of_text(text)) if name == "flagged" else text:
+                    places.setdefault(sentence.rstrip("."), []).append(axis.at(value) + air)
+        for sentence, at in places.items():
+            yield f"{begins} the {axis.words} is {', '.join(dict.fromkeys(at))}: {sentence}."

@@ -41,7 +41,7 @@ _SHOWN = {
     "rms": ("rms [nm]", lambda values: TO_NM * np.exp(values)),
     "skewness": ("skewness [–]", lambda values: values),
     "kurtosis": ("kurtosis [–]", lambda values: values),
-    "corner": ("corner [rad/µm]", lambda values: np.exp(values) / TO_UM),
+    "corner": ("corner of the spectrum [rad/µm]", lambda values: np.exp(values) / TO_UM),
     "slope": ("slope of the spectrum [–]", lambda values: values),
 }
 #: Number of values along a law.
@@ -229,7 +229,7 @@ def _show(side, scale, data, axis):
         along = data[KURTOSIS].isel({other: 0 for other in data[KURTOSIS].dims if other != axis.dimension})
         pairs = zip(axis.values, along.values, strict=True)
         between = "\n" if side.axis_name == "x" else " "
-        side.set_ticks(axis.values, [f"{at:.3g}{between}({kurtosis:.3g})" for at, kurtosis in pairs])
+        side.set_ticks(axis.values, [f"{at:.3g}{between}({kurtosis:.3g})".replace("-", "−") for at, kurtosis in pairs])
         side.set_label_text(f"{axis.label} (kurtosis)")
 
 
@@ -312,7 +312,7 @@ def laws(law: xr.Dataset) -> Figure:
         )
         panel.set_xlabel(f"{process.words_of(law.variable)} [{process.unit_of(law.variable)}]")
         panel.set_ylabel(words)
-    letter(columns[:, 0])
+    letter(columns[:, 0], [_SHOWN[name][0].partition(" [")[0] for name in names])
     legend_outside(figure, handles(columns[0][0]), "lower", 3)
     return figure
 

@@ -55,7 +55,7 @@ def put(panel: Axes, level: float, labels: list[Label]) -> None:
     """Write labels beside the line at a level, each where there is most room. Scales and ends of the axes are set."""
     to_parts = panel.transData + panel.transAxes.inverted()
     curves = [to_parts.transform(line.get_xydata()) for line in panel.lines if line.get_transform() == panel.transData]
-    curves = [one for curve in curves if len(one := curve[np.isfinite(curve).all(axis=1)])]
+    curves = [finite for curve in curves if len(finite := curve[np.isfinite(curve).all(axis=1)])]
     height, taken = float(to_parts.transform((panel.get_xlim()[0], level))[1]), []
     for label in labels:
         at = None if label.place is None else float(to_parts.transform((label.place, level))[0])
@@ -64,7 +64,7 @@ def put(panel: Axes, level: float, labels: list[Label]) -> None:
         )
         rooms = list(_rooms(at, width))
         unused = [room for room in rooms if not any(room.meets(other) for other in taken)]
-        room = max(unused or rooms, key=lambda one: one.free(curves, height))
+        room = max(unused or rooms, key=lambda room: room.free(curves, height))
         taken.append(room)
         _write(panel, level, label, room)
 

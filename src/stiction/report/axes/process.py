@@ -12,16 +12,16 @@ from stiction.report.axes.axis import axes_of
 from stiction.stages.axes.recommended import ALL, settings_of_processes
 
 
-def notes(found: xr.Dataset, laws: Sequence[xr.Dataset]) -> list[str]:
+def notes(curves: xr.Dataset, laws: Sequence[xr.Dataset]) -> list[str]:
     """Sentences on settings in contradiction to a law, and on points not computed or flagged."""
-    said = [sentence for law in laws for sentence in str(law.flags.item()).splitlines()]
-    if "second" not in found.dims:
-        return said + list(axis.notes(found))
-    second = axes_of(found)[1]
+    sentences = [sentence for law in laws for sentence in str(law.flags.item()).splitlines()]
+    if "second" not in curves.dims:
+        return sentences + list(axis.notes(curves))
+    second = axes_of(curves)[1]
     for value in second.values:
         begins = f"{second.words.capitalize()} {value:.6g}{second.unit}: "
-        said += [begins + sentence for sentence in axis.notes(found.sel(second=value))]
-    return said
+        sentences += [begins + sentence for sentence in axis.notes(curves.sel(second=value))]
+    return sentences
 
 
 # One process
@@ -29,37 +29,37 @@ def notes(found: xr.Dataset, laws: Sequence[xr.Dataset]) -> list[str]:
 
 def answers(recommended: xr.Dataset, who: str) -> list[str]:
     """Sentences on the sufficient settings for a device or for all, the best one and the next to measure."""
-    one = recommended.sel(who=who)
-    said = [briefly(recommended, who)]
-    if np.isnan(float(one.best)):
-        return said
-    along, crossed = axes_of(one)[0], zip(one.crossing.values, one.crossing_error.values, strict=True)
+    advice = recommended.sel(who=who)
+    sentences = [briefly(recommended, who)]
+    if np.isnan(float(advice.best)):
+        return sentences
+    along, crossed = axes_of(advice)[0], zip(advice.crossing.values, advice.crossing_error.values, strict=True)
     if places := [along.at(*crossing) for crossing in crossed if np.isfinite(crossing[0])]:
-        said.append(f"The estimate meets the requirement exactly at {' and at '.join(places)}.")
-    return said + best(one) + following(one)
+        sentences.append(f"The estimate meets the requirement exactly at {' and at '.join(places)}.")
+    return sentences + best(advice) + following(advice)
 
 
 def briefly(recommended: xr.Dataset, who: str) -> str:
     """Sentence on the sufficient settings and the best one."""
-    one = recommended.sel(who=who)
-    along, ranges = axes_of(one)[0], axes_of(one)[0].ranges(one.sufficient.values)
-    if np.isnan(float(one.best)):
+    advice = recommended.sel(who=who)
+    along, ranges = axes_of(advice)[0], axes_of(advice)[0].ranges(advice.sufficient.values)
+    if np.isnan(float(advice.best)):
         return (
             f"{_subject(who, 'Settings')} of the {along.words} that suffice are not known: too few could be computed."
         )
-    share = "the allowed share of every device" if who == ALL else one_in(float(one.share))
-    most, of_mean = along.at(one.best, one.best_error), _mean_process(one)
+    share = "the allowed share of every device" if who == ALL else one_in(float(advice.share))
+    most, of_mean = along.at(advice.best, advice.best_error), _mean_process(advice)
     if not ranges:
-        whole = f"{along.values[0]:g} to {along.values[-1]:g}{along.unit}"
-        none = f"{_subject(who, 'No setting')} of the {along.words} from {whole} is sure to leave at most {share} stuck"
+        span = f"{along.values[0]:g} to {along.values[-1]:g}{along.unit}"
+        none = f"{_subject(who, 'No setting')} of the {along.words} from {span} is sure to leave at most {share} stuck"
         return f"{none} in the next run ({of_mean}); the best is {most}."
     settings = f"{_subject(who, 'Settings')} of the {along.words} from {' or '.join(ranges)}"
     return f"{settings} leave at most {share} stuck in the next run (95 % confidence; {of_mean}), best {most}."
 
 
-def _mean_process(one):
+def _mean_process(advice):
     """Settings that suffice for the mean process, beside those for the next run."""
-    return f"mean process: {' or '.join(axes_of(one)[0].ranges(one.sufficient_mean.values)) or 'none'}"
+    return f"mean process: {' or '.join(axes_of(advice)[0].ranges(advice.sufficient_mean.values)) or 'none'}"
 
 
 def _subject(who, begins):
@@ -67,35 +67,35 @@ def _subject(who, begins):
     return f"All devices together: {begins[:1].lower()}{begins[1:]}" if who == ALL else begins
 
 
-def best(one: xr.Dataset) -> list[str]:
+def best(advice: xr.Dataset) -> list[str]:
     """Interval of the best setting, and the reasons of its ends."""
-    along, (low, high) = axes_of(one)[0], map(float, one.best_interval)
+    along, (low, high) = axes_of(advice)[0], map(float, advice.best_interval)
     first, last = along.values[[0, -1]]
-    if low == high and low in (first, last) and not along.ranges(one.sufficient.values):
+    if low == high and low in (first, last) and not along.ranges(advice.sufficient.values):
         side = "below" if low == first else "above"
         return [f"The best setting is the end of the measured range: measure settings {side} {low:g}{along.unit}."]
-    said = []
+    sentences = []
     if low < high:
-        said.append(f"The best setting lies between {along.text(low)} and {along.at(high)} (95 %).")
+        sentences.append(f"The best setting lies between {along.text(low)} and {along.at(high)} (95 %).")
     ends = [f"{end:g}{along.unit}" for end, near in ((first, low == first), (last, high == last)) if near]
     if ends:
-        said.append(
+        sentences.append(
             f"It may lie beyond {' or '.join(ends)}, where nothing was measured: nothing is said about settings there."
         )
-    return said
+    return sentences
 
 
-def following(one: xr.Dataset) -> list[str]:
+def following(advice: xr.Dataset) -> list[str]:
     """Setting to measure next, or nothing if none shrinks an error."""
-    if np.isnan(float(one.next)):
+    if np.isnan(float(advice.next)):
         return []
-    along = axes_of(one)[0]
+    along = axes_of(advice)[0]
     subject = {"best": "the best setting", "range": "the length of the range that suffices"}[
-        str(one.next_subject.values)
+        str(advice.next_subject.values)
     ]
-    errors = f"from {float(one.next_before):.2g} to {float(one.next_after):.2g}{along.unit}"
-    when = "again" if bool(one.next_again) else "next"
-    return [f"Measure {along.at(one.next)} {when}: this is expected to shrink the error of {subject} {errors}."]
+    errors = f"from {float(advice.next_before):.2g} to {float(advice.next_after):.2g}{along.unit}"
+    when = "again" if bool(advice.next_again) else "next"
+    return [f"Measure {along.at(advice.next)} {when}: this is expected to shrink the error of {subject} {errors}."]
 
 
 # Two processes
@@ -106,11 +106,11 @@ def answers_of_pairs(pairs: xr.Dataset) -> list[str]:
     if np.isnan(pairs.best.values).any():
         return [pairs_briefly(pairs)]
     views = settings_of_processes(pairs)
-    said = [pairs_briefly(pairs), *(_at_settings(pairs) if views[1].sufficient.size else [])]
+    sentences = [pairs_briefly(pairs), *(_at_settings(pairs) if views[1].sufficient.size else [])]
     for view in views:
         words = axes_of(view)[0].words.capitalize()
-        said += [f"{words}: {one[:1].lower()}{one[1:]}" for one in (*best(view), *following(view))]
-    return said
+        sentences += [f"{words}: {sentence[:1].lower()}{sentence[1:]}" for sentence in (*best(view), *following(view))]
+    return sentences
 
 
 def pairs_briefly(pairs: xr.Dataset) -> str:
@@ -123,8 +123,8 @@ def pairs_briefly(pairs: xr.Dataset) -> str:
     share, most, of_mean = one_in(float(pairs.share)), " with ".join(most), _mean_process(views[1])
     ranges = axes[1].ranges(views[1].sufficient.values)
     if not ranges:
-        whole = " and ".join(f"the {one.words} from {one.ranges([one.values[[0, -1]]])[0]}" for one in axes)
-        none = f"No pair of {whole} is sure to leave at most {share} stuck in the next runs"
+        measured = " and ".join(f"the {along.words} from {along.ranges([along.values[[0, -1]]])[0]}" for along in axes)
+        none = f"No pair of {measured} is sure to leave at most {share} stuck in the next runs"
         return f"{none} ({axes[1].words}, {of_mean}); the best is {most}."
     return (
         f"Pairs of the {names} leave at most {share} stuck in the next runs (95 % confidence) where the "

@@ -38,18 +38,18 @@ def answers(dataset: xr.Dataset) -> list[str]:
 
     Those of a map are about each of its curves.
     """
-    said = []
+    sentences = []
     for curve in curves_of(dataset):
         of_curve = [*(_answer(curve, *subject) for subject in subjects(curve)), *notes(curve)]
-        said += [_at_other(curve) + sentence for sentence in of_curve]
-    return said + note_on_extrapolation(dataset)
+        sentences += [_at_other(curve) + sentence for sentence in of_curve]
+    return sentences + note_on_extrapolation(dataset)
 
 
 def briefly(dataset: xr.Dataset) -> list[str]:
     """Places of sufficient roughness, one sentence for each humidity and end state, of a map at its given value."""
     curves = [curve for curve in curves_of(dataset) if not _is_changed(curve)]
-    said = [f"{_enough(curve, *subject)}." for curve in curves for subject in subjects(curve)]
-    return said + note_on_extrapolation(dataset)
+    sentences = [f"{_enough(curve, *subject)}." for curve in curves for subject in subjects(curve)]
+    return sentences + note_on_extrapolation(dataset)
 
 
 def note_on_extrapolation(dataset: xr.Dataset) -> list[str]:
@@ -67,9 +67,9 @@ def _at_other(curve):
     """Beginning of the sentences on a curve of a map, nothing for others."""
     if "other" not in curve.coords:
         return ""
-    other, given = axes_of(curve)[1], "" if _is_changed(curve) else ", as given"
+    other, as_given = axes_of(curve)[1], "" if _is_changed(curve) else ", as given"
     kurtosis = f" and the kurtosis {float(curve[KURTOSIS][0]):.3g}" if other.name == "skewness" else ""
-    return f"Where the {other.words} is {other.at(curve.other)}{kurtosis}{given}: "
+    return f"Where the {other.words} is {other.at(curve.other)}{kurtosis}{as_given}: "
 
 
 def _is_changed(curve):
@@ -99,38 +99,38 @@ def _enough(curve, humidity, shape):
 
 def _where(curve, axis: Axis, ranges):
     """Roughness whose simulated limit meets the requirement."""
-    known = axis.values[curve.safe.notnull().values]
-    if not len(known):
+    computed = axis.values[curve.safe.notnull().values]
+    if not len(computed):
         return "nothing is computed"
-    share, (whole,) = one_in(float(curve.share)), axis.ranges([(known[0], known[-1])])
+    share, (span,) = one_in(float(curve.share)), axis.ranges([(computed[0], computed[-1])])
     if not ranges:
-        return f"no {axis.words} of {whole} suffices: nowhere there is it certain that at most {share} sticks"
+        return f"no {axis.words} of {span} suffices: nowhere there is it certain that at most {share} sticks"
     # Bounds of beams allow for the number of drawn surfaces.
-    given = ", given the drawn surfaces" * sought_of(curve).more_is_better
-    sure = f"by simulation alone, 95 % confidence{given}"
-    if ranges == [whole]:
-        return f"at most {share} sticks at any {axis.words} of {whole} ({sure})"
-    return f"at most {share} sticks where the {axis.words} is {' or '.join(ranges)} ({sure}; computed for {whole})"
+    drawn = ", given the drawn surfaces" * sought_of(curve).more_is_better
+    sure = f"by simulation alone, 95 % confidence{drawn}"
+    if ranges == [span]:
+        return f"at most {share} sticks at any {axis.words} of {span} ({sure})"
+    return f"at most {share} sticks where the {axis.words} is {' or '.join(ranges)} ({sure}; computed for {span})"
 
 
 def _worst(curve, humidity, shape):
     """Roughness of strongest adhesion of a stopper if it is inside the range, beyond the errors of both ends."""
-    known, axis = curve.sel(humidity=humidity, shape=shape).dropna("roughness", subset=["estimate"]), axes_of(curve)[0]
-    forces, errors = known.estimate.values, known.error.values
+    points, axis = curve.sel(humidity=humidity, shape=shape).dropna("roughness", subset=["estimate"]), axes_of(curve)[0]
+    forces, errors = points.estimate.values, points.error.values
     if not sought_of(curve).more_is_better or not len(forces):
         return ""
     most = int(np.argmax(forces))
     apart = [forces[most] - forces[end] > DIFFERENT * np.hypot(errors[most], errors[end]) for end in (0, -1)]
     if not all(apart):
         return ""
-    place = axis.at(known.roughness[most])
-    return f"The worst {axis.words} is inside this range, near {place}: less and more of it hold less. "
+    worst = axis.at(points.roughness[most])
+    return f"The worst {axis.words} is inside this range, near {worst}: less and more of it hold less. "
 
 
 def _stuck_as_given(curve, humidity, shape):
     """P(stuck) on the surfaces as they are given, if it is known."""
-    given, axis = curve.sel(humidity=humidity, shape=shape, roughness=float(curve.given)), axes_of(curve)[0]
-    stuck = given.stuck.values.tolist()
+    as_given, axis = curve.sel(humidity=humidity, shape=shape, roughness=float(curve.given)), axes_of(curve)[0]
+    stuck = as_given.stuck.values.tolist()
     where = f"At the given {axis.words}" if _is_changed(curve) else "On the surfaces as they are given"
     if np.isnan(stuck[0]):
         return f"{where}, it is not computed."
@@ -151,14 +151,14 @@ def ranges_of(curve: xr.Dataset, humidity: float, shape: str) -> np.ndarray:
 def sure_in_short(curve: xr.Dataset, humidity: float, shape: str) -> str:
     """Where the simulated limit of a curve meets the requirement, in a few words for a picture."""
     axis, ranges = axes_of(curve)[0], ranges_of(curve, humidity, shape)
-    known = axis.values[curve.safe.sel(humidity=humidity, shape=shape).notnull().values]
-    parts = [_part(axis, ends, known) for ends in ranges]
+    computed = axis.values[curve.safe.sel(humidity=humidity, shape=shape).notnull().values]
+    parts = [_part(axis, ends, computed) for ends in ranges]
     return f"sure {' or '.join(parts)}" if parts else "nowhere sure"
 
 
-def _part(axis: Axis, ends, known):
+def _part(axis: Axis, ends, computed):
     """Range in words, without an end that is one of all known values."""
-    (low, high), is_open = ends, np.isclose(ends, known[[0, -1]], rtol=1e-9, atol=0)
+    (low, high), is_open = ends, np.isclose(ends, computed[[0, -1]], rtol=1e-9, atol=0)
     if is_open.all():
         return "everywhere"
     if is_open[1]:
@@ -169,5 +169,5 @@ def _part(axis: Axis, ends, known):
 def _rows(curve, dimension, humidity, shape):
     """Crossings or ranges of a humidity and end state."""
     names = [f"{dimension}_humidity", f"{dimension}_shape"]
-    own = (curve[names[0]].values == humidity) & (curve[names[1]].values == shape)
-    return curve.isel({dimension: np.flatnonzero(own)})
+    is_subject = (curve[names[0]].values == humidity) & (curve[names[1]].values == shape)
+    return curve.isel({dimension: np.flatnonzero(is_subject)})

@@ -26,7 +26,9 @@ def of_roughness(datasets: Mapping[str, xr.Dataset]) -> Table:
     The datasets are by name of the device.
     """
     rows = [row for device, dataset in datasets.items() for row in _rows(device, dataset)]
-    said = [f"{device}: {sentence}" for device, dataset in datasets.items() for sentence in roughness.answers(dataset)]
+    sentences = [
+        f"{device}: {sentence}" for device, dataset in datasets.items() for sentence in roughness.answers(dataset)
+    ]
     shows = (
         "Simulated limit of a length, or of a restoring force, against the roughness of a surface: with a "
         "confidence of 95 % (of a stopper: given the drawn surfaces), at most a fraction p sticks.",
@@ -34,7 +36,7 @@ def of_roughness(datasets: Mapping[str, xr.Dataset]) -> Table:
         Term("P(stuck)", "at the required length or force, with its 95 % band."),
         roughness.form(*datasets.values()),
         Term("Devices", "number of simulated devices at every roughness."),
-        *map(Line, said),
+        *map(Line, sentences),
     )
     shown = {"and": "other", KURTOSIS: KURTOSIS}
     columns = {
@@ -49,45 +51,51 @@ def of_processes(
     curves: Mapping[str, xr.Dataset], recommended: Sequence[xr.Dataset], laws: Mapping[str, Sequence[xr.Dataset]]
 ) -> Table:
     """Margins of devices over process variables: a row per device, humidity, end state and setting."""
-    said = [
+    sentences = [
         sentence if who == ALL else f"{who}: {sentence}"
-        for one in recommended
-        for who in map(str, one.who.values)
-        for sentence in process.answers(one, who)
+        for advice in recommended
+        for who in map(str, advice.who.values)
+        for sentence in process.answers(advice, who)
     ]
-    return _of_margins(curves, laws, said, "a process makes at values of its variable")
+    return _of_margins(curves, laws, sentences, "a process makes at values of its variable")
 
 
 def of_pairs(
     maps: Mapping[str, xr.Dataset], pairs: Mapping[str, xr.Dataset], laws: Mapping[str, Sequence[xr.Dataset]]
 ) -> Table:
     """Margins of devices over two processes: a row per device, humidity, end state and pair of settings."""
-    said = [f"{name}: {sentence}" for name, one in pairs.items() for sentence in process.answers_of_pairs(one)]
-    return _of_margins(maps, laws, said, "two processes make at values of their variables")
+    sentences = [
+        f"{name}: {sentence}"
+        for name, pairs_of_device in pairs.items()
+        for sentence in process.answers_of_pairs(pairs_of_device)
+    ]
+    return _of_margins(maps, laws, sentences, "two processes make at values of their variables")
 
 
-def _of_margins(found, laws, said, made):
+def _of_margins(curves, laws, sentences, makes):
     """Table of margins over processes, with sentences, and what the processes make in words."""
-    said += dict.fromkeys(sentence for device, one in found.items() for sentence in process.notes(one, laws[device]))
-    rows = [row for device, one in found.items() for row in _rows(device, one)]
+    sentences += dict.fromkeys(
+        sentence for device, curve in curves.items() for sentence in process.notes(curve, laws[device])
+    )
+    rows = [row for device, curve in curves.items() for row in _rows(device, curve)]
     caption = (
         "Length of a beam, or restoring force of a stopper, with the allowed fraction p stuck, on the surfaces that "
-        f"{made}, and its margin to the required one: the logarithm of their ratio, positive where the requirement is "
+        f"{makes}, and its margin to the required one: the logarithm of their ratio, positive where the requirement is "
         "met. Errors of the margin are due to the simulation, to the law of the surface at and between the measured "
         "settings, and to full elastic contact if it is computed. The next run scatters about the mean process as well."
     )
     is_map = any("second_value" in row for row in rows)
     columns = {name: column for name, column in _OF_PROCESSES.items() if is_map or name not in _SECOND}
-    return Table.of(rows, [caption, *map(Line, said)], columns)
+    return Table.of(rows, [caption, *map(Line, sentences)], columns)
 
 
-def _rows(device: str, found: xr.Dataset) -> Iterator[dict]:
+def _rows(device: str, curves: xr.Dataset) -> Iterator[dict]:
     """Numbers of a device, along one curve after the other."""
-    along, *others = axes_of(found)
+    along, *others = axes_of(curves)
     second = [others[0].dimension] if others else []
     dimensions = [*second, "humidity", "shape", along.dimension]
-    for at in product(*(found[dimension].values for dimension in dimensions)):
-        point = found.sel(dict(zip(dimensions, at, strict=True)))
+    for at in product(*(curves[dimension].values for dimension in dimensions)):
+        point = curves.sel(dict(zip(dimensions, at, strict=True)))
         yield _row(device, point, along) | (_other(others[0], at[0]) if others else {}) | _kurtosis_of(point)
 
 
@@ -110,7 +118,7 @@ def _row(device, point, along):
         | {"estimate": float(point.estimate) / UM, "estimate_se": float(point.error) / UM}
         | {"required": float(point.required) / UM}
         | ({} if is_rough else _margins(point))
-        | {name: float(part) for name, part in stuck.items()}
+        | {name: float(percent) for name, percent in stuck.items()}
         | ({"devices": int(point.samples)} if is_rough else {})
     )
 
@@ -120,7 +128,7 @@ def _margins(point):
     parts = {name: float(point[f"{name}_error"]) for name in (*PARTS, "run")}
     of_mean = float(np.hypot(np.hypot(parts["simulation"], parts["law"]), parts["model"]))
     errors = {"margin_se": of_mean, "margin_of_run_se": float(np.hypot(of_mean, parts["run"]))}
-    return {"margin": float(point.margin)} | errors | {f"{name}_se": part for name, part in parts.items()}
+    return {"margin": float(point.margin)} | errors | {f"{name}_se": error for name, error in parts.items()}
 
 
 def _other(axis, value):

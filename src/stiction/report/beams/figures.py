@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.transforms import ScaledTranslation
 
 from stiction.beam.cantilever import Beam
@@ -27,6 +28,7 @@ from stiction.report.style import (
     figure_stage,
     handles,
     humidity_axis,
+    is_page,
     letter,
     panels,
     places,
@@ -39,6 +41,10 @@ from stiction.stages.beams.releases import ends_as, stuck_energies, stuck_length
 # Figure 14
 
 
+#: Share of the gap that is drawn below it, as substrate, and above it.
+_SUBSTRATE = 0.06
+
+
 @styled
 def beam_shapes(beams: xr.Dataset) -> Figure:
     """Figure 14: shapes of some released beams, one highlighted. Histogram of the crack lengths of S-shapes."""
@@ -46,14 +52,18 @@ def beam_shapes(beams: xr.Dataset) -> Figure:
     stuck = ends_as(beams, "S-shape")
     deflection, x = TO_UM * beams.deflection.values, TO_UM * beams.node.values
     shapes.plot(x, deflection.T, color="0.7", linewidth=0.4, rasterized=True)
+    shapes.plot([], [], color="0.7", label="each beam")
     for k in np.flatnonzero(stuck[: len(deflection)])[:1]:
-        shapes.plot(x, deflection[k], color="black", linewidth=1.4)
+        shapes.plot(x, deflection[k], color="black", linewidth=1.4, label="one S-shaped beam")
+    ground = deflection.max()
+    shapes.axhspan(ground, (1 + _SUBSTRATE) * ground, color="0.35", label="substrate")
     shapes.set(xlabel="position [µm]", ylabel="deflection [µm]", xlim=x[[0, -1]])
-    shapes.invert_yaxis()
+    shapes.set_ylim((1 + _SUBSTRATE) * ground, -_SUBSTRATE * ground)
+    shapes.legend(loc="upper right")
     crack = TO_UM * stuck_lengths(beams)
     histogram.hist(crack, bins="auto", color="0.75", edgecolor="black")
     histogram.set(xlabel="crack length $l_s$ [µm]", ylabel="number of beams")
-    histogram.margins(y=0.15)
+    histogram.margins(y=0.3)
     histogram.text(0.97, 0.95, _summary(crack, len(stuck)), ha="right", va="top", transform=histogram.transAxes)
     letter([shapes, histogram], [f"first {len(deflection)} of {len(stuck)} beams", "all beams"])
     return figure
@@ -62,7 +72,7 @@ def beam_shapes(beams: xr.Dataset) -> Figure:
 def _summary(crack, total):
     """Number, mean and standard deviation of crack lengths [µm] as text."""
     number = f"{len(crack)} of {total} beams S-shaped"
-    return f"{number}\n{with_error(crack.mean(), crack.std(ddof=1))} µm" if len(crack) > 1 else number
+    return f"{number}\nmean ± std: {with_error(crack.mean(), crack.std(ddof=1))} µm" if len(crack) > 1 else number
 
 
 # Figure 15
@@ -139,7 +149,7 @@ def adhesion_energies(pairs: Mapping[str, tuple], published: pd.DataFrame, flat:
                     _labels(panel, released, model, TO_MJ * weakest)
         # Markers beside their places are no data to the axis.
         row[0].update_datalim([(position, TO_MJ * weakest) for position in placed.values()], updatey=False)
-        row[0].margins(x=0.06)
+        row[0].margins(x=0.12 if is_page() else 0.06)
         humidity_axis(row[0], placed)
         if below is not None:
             _panels_of_shares(below, released, row[0].get_xlim())
@@ -154,11 +164,16 @@ def adhesion_energies(pairs: Mapping[str, tuple], published: pd.DataFrame, flat:
 
 def _legend_above(figure, axes):
     """Legend of all panels, with as many columns as fit across the figure."""
-    entries, style = handles(*axes.flat), {"loc": "outside upper center", "columnspacing": 1.2}
-    legend = figure.legend(*entries, ncols=5, **style)
-    if legend.get_window_extent().width > figure.bbox.width:
+    entries, labels = handles(*axes.flat)
+    if any(text.get_text().endswith("%") for panel in axes.flat for text in panel.texts):
+        entries.append(Line2D([], [], color="black", linestyle="", marker=r"$\%$", markersize=6))
+        labels.append("share of S-shapes, if below 100 %")
+    style = {"loc": "outside upper center", "columnspacing": 1.2}
+    for columns in (5, 4, 3, 2, 1):
+        legend = figure.legend(entries, labels, ncols=columns, **style)
+        if columns == 1 or legend.get_window_extent().width <= figure.bbox.width:
+            return
         legend.remove()
-        figure.legend(*entries, ncols=4, **style)
 
 
 def _rows_of_panels(pairs, published):
@@ -166,7 +181,7 @@ def _rows_of_panels(pairs, published):
     apart = [_labels_meet(released, rows(published, pair=pair)) for pair, (_, released, _) in pairs.items()]
     heights = [height for has_shares in apart for height in _HEIGHTS[: 1 + has_shares]]
     size = DOUBLE, sum(heights) + 0.6
-    figure, axes = panels(len(heights), 2, size, sharex="row", sharey="row", height_ratios=heights)
+    figure, axes = panels(len(heights), 2, size, beside=True, sharex="row", sharey="row", height_ratios=heights)
     rest = iter(axes)
     return figure, axes, [(next(rest), next(rest) if has_shares else None) for has_shares in apart]
 
@@ -278,7 +293,7 @@ def _labels(panel, released, model, weakest):
 
     Beams of which none is S-shaped get a smaller marker at the energy of the longest crack [mJ m⁻²].
     """
-    style = {"fontsize": 6, "ha": "center", "path_effects": OUTLINED, "zorder": 6}
+    style = {"fontsize": 7, "ha": "center", "path_effects": OUTLINED, "zorder": 6}
     for humidity, share in _shares(released, model):
         if share < 1:
             energies = _energies(released[humidity, model])

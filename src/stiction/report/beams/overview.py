@@ -13,14 +13,30 @@ from stiction.plan.names import by_outcome
 from stiction.report import published
 from stiction.report.format import TO_MPA, TO_NM, TO_UM
 from stiction.report.published import rows
-from stiction.report.style import MODELS, PUBLISHED, figure_stage, humidity_axis, letter, panels, places, styled
+from stiction.report.style import (
+    MODELS,
+    PUBLISHED,
+    figure_stage,
+    handles,
+    humidity_axis,
+    is_page,
+    legend_outside,
+    letter,
+    panels,
+    places,
+    styled,
+)
 from stiction.stages.beams.releases import ends_as, stuck_lengths
 from stiction.stages.laws import forces as stage_forces
 
-_SIZE = 7.2, 2.2
+_SIZE = 7.2, 2.4
 _COLOUR = MODELS["NG"]["color"]
+#: Lines of all curves, and of highlighted ones.
+_PALE, _FULL = {"color": "0.75", "linewidth": 0.4}, {"color": _COLOUR, "linewidth": 0.6}
 #: Largest side of the shown part of the surface [m].
 _SHOWN = 5e-6
+#: Height of the part over its width on a page [-].
+_PART = 0.6
 #: Number of highlighted force curves.
 _HIGHLIGHTED = 8
 #: A force curve is drawn until its attraction has decayed to the first share of the largest attraction, and up to the
@@ -53,17 +69,23 @@ def overview(
     _shapes(shapes, beams)
     _lengths(lengths, released, rows(published, pair=pair))
     letter(axes, ["rough surface", "adhesive force", "released beams", "crack length"])
+    if is_page():
+        for panel, place in zip(axes[1:], ("lower right", "upper right", "best"), strict=True):
+            panel.legend(loc=place)
+    else:  # small panels have no room
+        legend_outside(figure, handles(*axes), "lower", 8)
     return figure
 
 
 def _surface(figure, panel, character):
-    """Square part of the surface, seen from above."""
+    """Square part of the surface, on a page a wide one, seen from above."""
     spacing = float(character.x[1] - character.x[0])
     points = min(int(_SHOWN / spacing), *character.elevation.shape)
     side = TO_UM * points * spacing
-    elevation = TO_NM * character.elevation.values[:points, :points].T
+    part = _PART if is_page() else 1.0
+    elevation = TO_NM * character.elevation.values[:points, : round(part * points)].T
     low, high = np.quantile(elevation, (0.002, 0.998))
-    image = panel.imshow(elevation, origin="lower", extent=(0, side, 0, side), vmin=low, vmax=high)
+    image = panel.imshow(elevation, origin="lower", extent=(0, side, 0, part * side), vmin=low, vmax=high)
     panel.set(xlabel="$x_1$ [µm]", ylabel="$x_2$ [µm]")
     figure.colorbar(image, ax=panel, label="height $z$ [nm]", fraction=0.06, pad=0.02, shrink=0.9)
 
@@ -74,8 +96,9 @@ def _forces(panel, forces):
     deepest = -force.min(axis=1)
     lines = [np.column_stack([TO_NM * distance, TO_MPA * f])[f < _REPULSION * deepest.max()] for f in force]
     panel.axhline(0, color="black", linewidth=0.5)
-    panel.add_collection(LineCollection(lines, color="0.8", linewidth=0.3, rasterized=True))
-    panel.add_collection(LineCollection(lines[:_HIGHLIGHTED], color=_COLOUR, linewidth=0.6))
+    for shown, style, label in ((lines, _PALE, "force on each strip"), (lines[:_HIGHLIGHTED], _FULL, "a few of them")):
+        panel.add_collection(LineCollection(shown, **style, rasterized=shown is lines))
+        panel.plot([], [], **style, label=label)
     vector, limit = stage_forces.vectors(forces)
     # ASSUME: the curve of median energy is the typical one.
     k = stage_forces.typical(forces)
@@ -86,22 +109,22 @@ def _forces(panel, forces):
     near = np.linspace(first, last, 400)
     pressure = forcelaw.pressure(law, near)
     below = pressure < _REPULSION * deepest.max()
-    panel.plot(TO_NM * near[below], TO_MPA * pressure[below], color="black", linestyle="--", label="Eq. (12)")
+    panel.plot(TO_NM * near[below], TO_MPA * pressure[below], color="black", linestyle="--", label="a fitted law")
     panel.set(xlim=(TO_NM * first, TO_NM * last), ylim=TO_MPA * deepest.max() * np.array([-1.08, _REPULSION]))
     panel.set(xlabel=r"distance $\bar d$ [nm]", ylabel=r"force per area $\bar f$ [MPa]")
-    panel.legend(loc="lower right")
 
 
 def _shapes(panel, beams):
     """Shapes of the first beams, one S-shaped beam highlighted."""
     deflection, x = TO_UM * beams.deflection.values, TO_UM * beams.node.values
-    panel.plot(x, deflection.T, color="0.75", linewidth=0.4, rasterized=True)
+    panel.plot(x, deflection.T, **_PALE, rasterized=True)
+    panel.plot([], [], **_PALE, label="shape of each beam")
     for k in np.flatnonzero(ends_as(beams, "S-shape")[: len(deflection)])[:1]:
-        panel.plot(x, deflection[k], color=_COLOUR, linewidth=1.6)
+        panel.plot(x, deflection[k], color=_COLOUR, linewidth=1.6, label="one that sticks")
     ground = deflection.max()
-    panel.axhspan(ground, 1.1 * ground, color="0.35")
-    panel.text(x[-1] / 2, 1.05 * ground, "substrate", color="white", ha="center", va="center", fontsize=6)
-    panel.set(xlabel="position [µm]", ylabel="deflection [µm]", xlim=x[[0, -1]], ylim=(1.1 * ground, -0.06 * ground))
+    panel.axhspan(ground, 1.14 * ground, color="0.35")
+    panel.text(x[-1] / 2, 1.07 * ground, "substrate", color="white", ha="center", va="center", fontsize=7)
+    panel.set(xlabel="position [µm]", ylabel="deflection [µm]", xlim=x[[0, -1]], ylim=(1.14 * ground, -0.06 * ground))
 
 
 def _lengths(panel, released, published):
@@ -127,13 +150,12 @@ def _lengths(panel, released, published):
     style |= {"fmt": "o-", "label": "computed here"}
     aside = _APART if len(published) else 0.0
     panel.errorbar(humidity[~dry] - aside, mean[~dry], deviation[~dry], **style)
-    panel.set(xlabel="relative humidity [–]", ylabel="crack length $l_s$ [µm]")
+    panel.set(xlabel="relative humidity [–]", ylabel="crack length $l_s$, mean ± std [µm]")
     panel.margins(y=0.12)
     if len(humidity) > _FEW:
         low, high = panel.get_ylim()
         panel.set_ylim(low, high + 0.3 * (high - low))  # room for the legend
     humidity_axis(panel, placed)
-    panel.legend()
 
 
 STAGES = (

@@ -11,7 +11,17 @@ from stiction.analysis.prediction import LENGTHS, PAIRS, Discrepancy
 from stiction.contact.air import is_humid
 from stiction.plan.stage import File
 from stiction.report.format import MISSING
-from stiction.report.style import DOUBLE, columns_of_panels, figure_stage, humidity_axis, letter, plain_log, styled
+from stiction.report.style import (
+    DOUBLE,
+    columns_of_panels,
+    figure_stage,
+    handles,
+    humidity_axis,
+    legend_outside,
+    letter,
+    plain_log,
+    styled,
+)
 from stiction.report.table import Term
 
 #: Probabilities of the intervals.
@@ -115,19 +125,24 @@ def intervals(table: pd.DataFrame) -> Figure:
         for coverage, colour in zip(reversed(COVERAGES), _GREYS, strict=True):
             low, high = (table_of_pair[name] for name in ENDS[coverage])
             panel.fill_between(
-                table_of_pair.relative_humidity, low, high, color=colour, linewidth=0, label=_percent(coverage)
+                table_of_pair.relative_humidity,
+                low,
+                high,
+                color=colour,
+                linewidth=0,
+                label=f"{_percent(coverage)} interval",
             )
         panel.plot(table_of_pair.relative_humidity, table_of_pair.crack_length_um, label="computed", **_COMPUTED)
         if table_of_pair.experiment_um.notna().any():
             measured = table_of_pair.experiment_um, table_of_pair.experiment_std_um
-            panel.errorbar(table_of_pair.relative_humidity, *measured, label="measured", **_MEASURED)
+            panel.errorbar(table_of_pair.relative_humidity, *measured, label="measured ± std", **_MEASURED)
         panel.set_yscale("log")
         plain_log(panel.yaxis)
         panel.set(xlabel="relative humidity RH [–]", ylabel="crack length $l_s$ [µm]")
         humidity_axis(panel)
     if parts:
         letter(columns[:, 0], [f"pair {pair}" for pair in parts])
-        columns[0, 0].legend()
+        legend_outside(figure, handles(*columns.flat), "lower", 4)
     return figure
 
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from stiction.answer.data import Answer
@@ -17,7 +18,7 @@ from stiction.plan.names import by_name
 from stiction.report.answer.tables import of_datasets
 from stiction.report.answer.words import is_forbidden
 from stiction.report.budget.tables import choice_label, response_text
-from stiction.report.format import TO_UN, bounding, number
+from stiction.report.format import TO_UN, number, safe_size
 from stiction.report.limits import words
 from stiction.report.style import (
     BUILD,
@@ -54,6 +55,8 @@ _ALL, _SMALL = 100, 2
 _SHARES, _OTHERS = "share of the variance [%]", "others"
 #: Width of a budget [in], and most characters of a line of its titles: 7 points of 390 pixels are 11 pixels.
 _WIDTH, _TITLE = 3.3, 38
+#: Bar of a standard error.
+_ERROR = {"color": "black", "linewidth": 0.6}
 #: Height of each further line of a title [in].
 _LINE = 0.15
 
@@ -73,27 +76,26 @@ def stoppers(
     """
     figure, columns, lines = columns_of_panels(len(datasets), 2, at_most_double(SINGLE), 5.6)
     for column, (name, dataset) in zip(columns, datasets.items(), strict=True):
-        build = _to_build((answers or {}).get(name))
-        _stuck_over_force(column[0], dataset, build)
+        answer = (answers or {}).get(name)
+        answer = None if answer is None or is_forbidden(answer) or not np.isfinite(answer.build) else answer
+        _stuck_over_force(column[0], dataset, answer)
         column[0].set_xlabel(on_own_axes("restoring force [µN]", columns.T))
-        _force_over_humidity(column[1], dataset, build)
+        _force_over_humidity(column[1], dataset, answer)
     for line in lines:
         line[0, 0].set_ylabel("P(stuck) [–]")
         line[1, 0].set_ylabel(on_own_axes("pull-off force [µN]", line))
     letter_lines(lines, list(datasets))
     if sentences := [f"{name}: {sentence}" for name, limits in warnings.items() for sentence in words.texts(limits)]:
         figure.set_label("\n".join(["Warnings:", *sentences]))
-        figure.supxlabel("Some results are beyond limits of the model.", fontsize=6, ha="left", x=0.01)
+        figure.supxlabel("Some results are beyond limits of the model.", fontsize=7, ha="left", x=0.01)
     return figure
 
 
-def _to_build(answer):
-    """Force to build of an answer [µN], NaN without one or where a limit forbids it."""
-    return np.nan if answer is None or is_forbidden(answer) else TO_UN * answer.build
+def _stuck_over_force(panel, dataset, answer):
+    """P(stuck) over the force, at every humidity of the device, with the band and the limits of its table.
 
-
-def _stuck_over_force(panel, dataset, build):
-    """P(stuck) over the force, at every humidity of the device, with the band and the limits of its table."""
+    The force to build is that of an answer, or unknown.
+    """
     restoring, lowest = TO_UN * float(dataset.restoring_force), 0.5 / dataset.sizes["sample"]
     colours = humidity_colours(dataset.humidity.values.tolist())
     limits = dataset.safe_force.sel(part="safe", share=dataset.share > lowest)
@@ -107,13 +109,14 @@ def _stuck_over_force(panel, dataset, build):
         panel.plot(TO_UN * of_air, of_air.share, "|", color=colour, markersize=9, markeredgewidth=1.5)
     if limits.notnull().any():
         panel.plot([], [], "|", color="0.3", markersize=9, markeredgewidth=1.5, label="simulated limit, 95 %")
-    if np.isfinite(build):
-        panel.axvline(build, color=BUILD, linewidth=1.2, label=f"to build, {bounding(build, 3, up=True)} µN")
+    if answer is not None:
+        label = f"to build, {safe_size(answer.build, answer.sought)}"
+        panel.axvline(TO_UN * answer.build, color=BUILD, linewidth=1.2, label=label)
     panel.axvline(restoring, color="0.4", linestyle=":", linewidth=0.8)
     panel.set(yscale="log", xlim=(0, None), ylim=(lowest, 1.3))
     if np.isfinite(restoring):
         _name_restoring_force(panel, restoring)
-    legend_below(panel, handles(panel)[0])
+    legend_below(panel, [*handles(panel)[0], Patch(color="0.3", alpha=0.2, linewidth=0, label="95 % band")])
 
 
 def _forces_of_band(dataset, forces, limits):
@@ -138,8 +141,11 @@ def _name_restoring_force(panel, restoring):
     )
 
 
-def _force_over_humidity(panel, dataset, build):
-    """Mean and 5 to 95 % of the pull-off force along the fine axis, its limit, and the worst humid air."""
+def _force_over_humidity(panel, dataset, answer):
+    """Mean and 5 to 95 % of the pull-off force along the fine axis, its limit, the worst humid air, and what to build.
+
+    The forces to build are those of an answer, or unknown.
+    """
     low, high = (TO_UN * dataset.quantile_along.sel(probability=p) for p in dataset.probability.values[[0, -1]])
     light = {"color": _COLOUR, "alpha": 0.2, "linewidth": 0}
     worst, humid = Air(float(dataset.worst_humidity)), is_humid(dataset.axis.values)
@@ -159,16 +165,26 @@ def _force_over_humidity(panel, dataset, build):
     entries += _limit_over_humidity(panel, dataset, placed, single)
     if np.isfinite(restoring := TO_UN * float(dataset.restoring_force)):
         entries.append(panel.axhline(restoring, color="0.4", linestyle=":", linewidth=0.8, label="restoring force"))
-    if np.isfinite(build):
-        label = f"to build in the stated airs, {bounding(build, 3, up=True)} µN"
-        at = [placed.get(humidity, humidity) for humidity in dataset.humidity.values]
-        entries += panel.plot(at, np.full(len(at), build), "D", color=BUILD, markersize=4, label=label)
+    if answer is not None:
+        entries += _forces_to_build(panel, [placed.get(h, h) for h in dataset.humidity.values], answer)
     if not single.all():
         label = f"worst {worst.choose(f'humidity {worst.humidity:.2f}', worst.where)}, by the mean"
         entries += panel.plot([placed[worst.humidity]], [float(means.max())], "v", color="black", label=label)
     legend_below(panel, entries)
     panel.set(xlabel="relative humidity [–]", ylim=(0, None))
     humidity_axis(panel, placed)
+
+
+def _forces_to_build(panel, places_of_airs, answer):
+    """Forces to build in the stated airs, and the largest between them if it is stricter, as entries of a legend."""
+    label = f"to build in the stated airs, {safe_size(answer.build, answer.sought)}"
+    forces = np.full(len(places_of_airs), TO_UN * answer.build)
+    entries = panel.plot(places_of_airs, forces, "D", color=BUILD, markersize=4, label=label)
+    if between := answer.between:
+        label = f"between them, interpolated, RH {between.humidity:.2g}: {safe_size(between.size, answer.sought)}"
+        style = {"color": BUILD, "markersize": 5, "markerfacecolor": "white", "label": label}
+        entries += panel.plot(between.humidity, TO_UN * between.size, "D", **style)
+    return entries
 
 
 def _limit_over_humidity(panel, dataset, placed, single):
@@ -214,6 +230,7 @@ def budget(budgets: Mapping[tuple, xr.Dataset]) -> Figure:
         panel.set_xlabel(label)
     letter(axes, [title for title, *_ in contents])
     marks = [Patch(color=colour, label=Air(humidity).words) for humidity, colour in colours.items()]
+    marks.append(Line2D([], [], **_ERROR, marker="|", markersize=3, label="± standard error"))
     legend_outside(figure, (marks, [mark.get_label() for mark in marks]), "lower", 8)
     return figure
 
@@ -305,7 +322,7 @@ def _rows_of_bars(panel, rows: Mapping[str, Sequence[tuple]], colours: Sequence[
             at = row + (k - (len(bars) - 1) / 2) * height
             panel.barh(at, high - low, height, left=low, color=shade, linewidth=0)
             if error > 0:
-                panel.errorbar(end, at, xerr=np.c_[reach], color="black", linewidth=0.6, capsize=1)
+                panel.errorbar(end, at, xerr=np.c_[reach], **_ERROR, capsize=1)
     widest = max(ends, default=0.0) or 1.0
     panel.axvline(0, color="black", linewidth=0.6)
     panel.set_yticks(range(len(rows)), list(rows))

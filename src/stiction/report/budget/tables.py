@@ -270,18 +270,18 @@ def _effect(budget, inputs, slope_errors):
     return {"effect_percent": 100 * budget.effect(inputs), "effect_se_percent": 100 * error}
 
 
-def _effect_as_text(part, effect, error):
+def _effect_as_text(share, effect, error):
     """Effect with its standard error, if it has one. Effects of a choice, or of the model, have a sign."""
-    if part in MODEL:
-        return column.marked_change(effect, error, part == MODEL[1])
+    if share in MODEL:
+        return column.marked_change(effect, error, share == MODEL[1])
     if not error > 0 or np.isnan(effect):
         return number(effect, ".2g")
-    return (signed if part == "choice" else with_error)(effect, error)
+    return (signed if share == "choice" else with_error)(effect, error)
 
 
 _BUDGET = DEVICE | {
     "held by": (str, "held_by"),
-    "what": (lambda part, name: f"choice: {choice_label(name)}" if part == "choice" else name, "part", "name"),
+    "what": (lambda share, name: f"choice: {choice_label(name)}" if share == "choice" else name, "part", "name"),
     "effect [%]": (_effect_as_text, "part", "effect_percent", "effect_se_percent"),
     "remaining [%]": (".2g", "remaining_percent"),
 }

@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from stiction.analysis.model_error import length_factors, rms_deviation
@@ -173,7 +174,7 @@ def _energies_of_models(study, of_full):
 #: Error that is due to rounding [%].
 _ROUNDING = 1e-10
 #: Height of the legend below the panels, width of the labels of rows, and of a panel [in].
-_LEGEND, _LABELS, _PANEL = 1.0, 0.75, 0.85
+_LEGEND, _LABELS, _PANEL = 1.0, 0.75, 1.4
 #: Colours by the attraction of the solids, the first one filled.
 _COLOURS = ("#0072B2", "#C98500")
 
@@ -193,8 +194,7 @@ def figure(*data) -> Figure:
 def changes_drawn(frame: pd.DataFrame, full: Mapping[str, tuple[float, float]], published: pd.DataFrame) -> Figure:
     """Change of the crack length by each reading at the lowest humidity, a panel for each pair.
 
-    Below them full elastic contact, lines for published and measured lengths. The panels are as narrow as a column of a
-    journal, so that their text can be read on a phone.
+    Below them full elastic contact, lines for published and measured lengths.
 
     Parameters
     ----------
@@ -221,18 +221,20 @@ def changes_drawn(frame: pd.DataFrame, full: Mapping[str, tuple[float, float]], 
         attraction = choice_label(f"van_der_waals_{base.vdw}").removeprefix("van der Waals ")
         dots.draw(panel, _readings(of_pair) | {"full contact": [of_full_contact]}, column=attraction)
         panel.xaxis.set_major_locator(MaxNLocator(3))
-        panel.set_xlabel("change of\n$l_s$ [%]")
-        titles.append(f"pair {pair}\n{Air(base.relative_humidity).words}")
+        panel.set_xlabel("change of $l_s$ [%]")
+        titles.append(f"pair {pair}, {Air(base.relative_humidity).words}")
     low, high = np.transpose([panel.get_xlim() for panel in columns.flat])
     for panel in columns.flat:
         panel.set_xlim(low.min(), high.max())
     letter_lines(lines, titles)
-    legend_outside(figure, handles(*columns.flat), "lower", 2)
+    entries, labels = handles(*columns.flat)
+    entries.append(Line2D([], [], linestyle="", label="bars: ± standard error"))
+    legend_outside(figure, (entries, [*labels, entries[-1].get_label()]), "lower", 2)
     return figure
 
 
 def _width(columns):
-    """Width of a figure of some pairs [in]: for three, 7 points of 390 pixels are 11 pixels."""
+    """Width of a figure of some pairs [in]."""
     return _LABELS + _PANEL * columns
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
+from matplotlib.transforms import offset_copy
 
 from stiction.estimates import jackknife, mean_with_error
 from stiction.plan.names import by_name
@@ -23,6 +24,9 @@ from stiction.report.style import (
     styled,
 )
 from stiction.report.table import Table, Term, table_stage
+
+#: Distance of the bars of a humidity from those of the one before [in].
+_ASIDE = 0.05
 
 _STRIPS = (
     "Adhesion after surfaces were pressed together once: ratio of the mean adhesion energy ē to that before, at each "
@@ -82,24 +86,37 @@ def _line(key, rows):
     return shown
 
 
-@styled
 def figure(studies: Mapping[str, xr.Dataset]) -> Figure:
     """Ratio of the energies against the mean pressure, for each humidity. Parameters as in ``_rows``."""
-    frame = pd.DataFrame(_rows(studies))
-    figure, columns, lines = columns_of_panels(len(studies), 1, at_most_double(1.3 * SINGLE), 3.0)
-    for (panel,), pair in zip(columns, studies, strict=True):
+    return drawn(pd.DataFrame(_rows(studies)))
+
+
+@styled
+def drawn(frame: pd.DataFrame) -> Figure:
+    """Ratio of the energies against the mean pressure, for each humidity, from the frame of the table."""
+    pairs = frame.pair.unique()
+    figure, columns, lines = columns_of_panels(len(pairs), 1, at_most_double(1.3 * SINGLE), 3.0)
+    for (panel,), pair in zip(columns, pairs, strict=True):
         of_pair = frame[frame.pair == pair]
         for k, (humidity, colour) in enumerate(humidity_colours(of_pair.relative_humidity).items()):
             curve = of_pair[of_pair.relative_humidity == humidity]
-            style = {"color": colour, "marker": marker(k), "linestyle": dashes(k), "label": f"RH {humidity:g}"}
+            style = {
+                "color": colour,
+                "marker": marker(k),
+                "linestyle": dashes(k),
+                "label": f"RH {humidity:g}",
+            }
+            aside = offset_copy(panel.transData, figure, k * _ASIDE, 0)
             errors = {"xerr": curve.pressure_MPa_se, "yerr": curve.energy_ratio_se}
-            panel.errorbar(curve.pressure_MPa, curve.energy_ratio, **errors, **style)
+            panel.errorbar(curve.pressure_MPa, curve.energy_ratio, **errors, **style, transform=aside)
+            panel.update_datalim(np.c_[curve.pressure_MPa, curve.energy_ratio + curve.energy_ratio_se])
+        panel.autoscale_view()
         panel.axhline(1, color="0.6", linewidth=0.6, zorder=0)
         panel.set_xlabel("mean pressure [MPa]")
-        panel.legend()
+        panel.legend(title="bars: ± standard error, shifted")
     for line in lines:
         line[0, 0].set_ylabel(r"$\bar e$ after / before pressing [–]")
-    letter_lines(lines, [f"pair {pair}" for pair in studies])
+    letter_lines(lines, [f"pair {pair}" for pair in pairs])
     return figure
 
 

@@ -30,6 +30,7 @@ from stiction.report.style import (
     handles,
     humidity_axis,
     humidity_colours,
+    is_page,
     legend_below,
     legend_outside,
     letter_lines,
@@ -55,12 +56,13 @@ _ROOM = 0.05
 _APART = 0.05
 
 
-def refer_to_warnings(figure: Figure, warnings: Mapping[Any, list[Limit]]) -> None:
-    """Explain the numbers of the warnings below a figure, and add their texts to its caption."""
+def refer_to_warnings(figure: Figure, warnings: Mapping[Any, list[Limit]], *, above: bool = False) -> None:
+    """Explain the numbers of the warnings below or ``above`` a figure, and add their texts to its caption."""
     if sentences := with_numbers(warnings):
         numbers = "(1)" if len(sentences) == 1 else f"(1) to ({len(sentences)})"
         figure.set_label("\n".join(["Warnings:", *sentences]))
-        figure.supxlabel(f"{numbers}: beyond a limit of the model", fontsize=6, ha="left", x=0.01)
+        say = figure.suptitle if above else figure.supxlabel
+        say(f"{numbers}: beyond a limit of the model", fontsize=7, ha="left", x=0.01)
 
 
 @styled
@@ -187,7 +189,7 @@ def chart(
     letter_lines(lines, [f"{name}, gap {TO_UM * gap:g} µm, {END_STATES[shape].by}" for name, gap, shape in subjects])
     shown = sorted(zip(*handles(*columns[:, 0]), strict=True), key=lambda entry: isinstance(entry[0], PolyCollection))
     legend_outside(figure, tuple(zip(*shown, strict=True)), "lower", 2)
-    refer_to_warnings(figure, warnings)
+    refer_to_warnings(figure, warnings, above=is_page())  # clear of the legend
     return figure
 
 

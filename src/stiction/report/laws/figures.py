@@ -6,17 +6,30 @@ import numpy as np
 import xarray as xr
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from stiction.contact import forcelaw
 from stiction.models import SURFACE_MODELS
 from stiction.report.format import TO_MJ, TO_MPA, TO_NM
-from stiction.report.style import DOUBLE, MODELS, SINGLE, figure_stage, letter, panels, styled
+from stiction.report.style import (
+    DOUBLE,
+    MODELS,
+    SINGLE,
+    figure_stage,
+    is_page,
+    legend_outside,
+    letter,
+    panels,
+    styled,
+)
 from stiction.rounding import in_percent
 from stiction.stages.laws import forces as stage_forces
 from stiction.stages.laws.chaos import generated_laws
 
 #: Number of highlighted curves in Figure 12.
 _HIGHLIGHTED = 20
+#: Lines of highlighted and of all curves.
+_FEW, _ALL = {"color": MODELS["NG"]["color"], "linewidth": 0.6}, {"color": "0.75", "linewidth": 0.3}
 #: A curve is drawn until its attraction has decayed to this share of the largest attraction.
 _FOLLOWED = 0.01
 #: Range of the forces in Figure 12, relative to the largest attraction of a pair.
@@ -87,7 +100,8 @@ def force_curves(pairs: Mapping[str, tuple[xr.Dataset, xr.Dataset, np.ndarray]])
 
     Each pair has its datasets of stage forces for models G and NG, and the generated laws (n, 4).
     """
-    figure, axes = panels(len(pairs), 3, (DOUBLE, 1.9 * len(pairs) + 0.2), sharex="row", sharey="row")
+    size = DOUBLE, 1.9 * len(pairs) + 0.4
+    figure, axes = panels(len(pairs), 3, size, beside=True, sharex="row", sharey="row")
     for row, (gaussian, other, laws) in zip(axes, pairs.values(), strict=True):
         window, depth = _window(gaussian, other)
         distance = np.linspace(*window, 400)
@@ -102,7 +116,12 @@ def force_curves(pairs: Mapping[str, tuple[xr.Dataset, xr.Dataset, np.ndarray]])
     for panel in axes[-1]:
         panel.set_xlabel(r"distance $\bar d$ [nm]")
     kinds = (*(MODELS[model]["label"] for model in SURFACE_MODELS), "generated")
-    letter(axes, [f"pair {pair}, {kind}" for pair in pairs for kind in kinds])
+    letter(axes, [f"pair {pair},\n{kind}" for pair in pairs for kind in kinds])
+    shown = [
+        Line2D([], [], **style, label=label)
+        for style, label in ((_FEW, f"the first {_HIGHLIGHTED}"), (_ALL, "all curves"))
+    ]
+    legend_outside(figure, (shown, [line.get_label() for line in shown]), "lower", 2)
     return figure
 
 
@@ -114,9 +133,9 @@ def _enlarged(panel, forces, depth):
         inset = panel.inset_axes([0.28, 0.13, 0.66, below - 0.16])
         _curves(inset, *stage_forces.curves(forces), deepest)
         inset.set(xlim=TO_NM * np.array(_window(forces)[0]), ylim=TO_MPA * deepest * _RANGE)
-        inset.locator_params(nbins=4)
-        inset.tick_params(labelsize=6, pad=2)
-        inset.text(0.94, 0.06, "enlarged", ha="right", fontsize=6, transform=inset.transAxes)
+        inset.locator_params(nbins=2 if is_page() else 4)
+        inset.tick_params(pad=2)
+        inset.text(0.94, 0.06, "enlarged", ha="right", fontsize=7, transform=inset.transAxes)
 
 
 def _window(*cases):
@@ -131,8 +150,8 @@ def _window(*cases):
 def _curves(panel, distance, curves, highest):
     """Draw curves up to a force: the first ones highlighted, the others faint."""
     lines = [np.column_stack([TO_NM * distance, TO_MPA * f])[f < highest] for f in curves]
-    panel.add_collection(LineCollection(lines, color="0.75", linewidth=0.3, rasterized=True))
-    panel.add_collection(LineCollection(lines[:_HIGHLIGHTED], color=MODELS["NG"]["color"], linewidth=0.6))
+    panel.add_collection(LineCollection(lines, **_ALL, rasterized=True))
+    panel.add_collection(LineCollection(lines[:_HIGHLIGHTED], **_FEW))
     panel.axhline(0, color="black", linewidth=0.5)
 
 

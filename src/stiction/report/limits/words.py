@@ -43,60 +43,10 @@ def joined(limits: Iterable[Limit]) -> str:
 # Strips and lengths
 
 
-def _arcs_of_elements(share, strip):
-    return (
-        f"{100 * share:.4g} % of the beams end as arcs, held by the tip only. This share depends on the strip length, "
-        f"here {TO_UM * strip:.3g} µm. For a realistic share, describe the beam under `devices`, where tips are "
-        "computed on tilted strips."
-    )
-
-
 def _longer_strips(strip, longest, is_bridge):
     part_of_beam = "middle of this bridge" if is_bridge else "cracks of this beam"
     return (
         f"Strips of {TO_UM * strip:.3g} µm are longer than the {TO_UM * longest:.3g} µm that resolve the {part_of_beam}"
-    )
-
-
-def _nothing_simulated(is_bridge, **strips):
-    return (
-        f"{_longer_strips(**strips, is_bridge=is_bridge)}, by so much that nothing is simulated: every beam "
-        "counts as stuck that a surface made of its strongest patch alone would hold (safe side)."
-    )
-
-
-def _long_strips_of_bridge(**strips):
-    head = _longer_strips(**strips, is_bridge=True)
-    return f"{head}: its lengths may be off to either side. Shorter strips are more accurate."
-
-
-def _long_strips(**strips):
-    return (
-        f"{_longer_strips(**strips, is_bridge=False)} within {100 * ACCURACY:.0f} %: they stop too early, by at most "
-        f"{100 * TOO_EARLY:.0f} % where strips are {LONGER:g} times as long, which is the safe side. Shorter strips "
-        "are more accurate."
-    )
-
-
-def _smoother_than_full_contact():
-    return (
-        "smoother surfaces than the given one change more in full elastic contact than is computed, which is the "
-        "unsafe side: give the smoothest surface of the range"
-    )
-
-
-def _resampled_strips(samples):
-    return (
-        f"Few strips hold much more than most: the chaos model lacks them, so that strips are drawn from the {samples} "
-        "samples themselves. Strips that are rarer are missing. On two microscope files, lengths from 500 samples were "
-        "up to 3 % longer than lengths from 5000; contact.samples sets their number."
-    )
-
-
-def _lengths_of_sizes(error):
-    return (
-        f"Many devices are on this ground: lengths along the beam follow power laws through a few sizes. They err by "
-        f"{error:.1%} at sizes between these. Where they are too long, all lengths are shortened by it."
     )
 
 
@@ -105,35 +55,6 @@ def _repeated_strips(repetition, strip):
         f"Long waves raise or lower whole strips of {TO_UM * strip:.3g} µm: a strip repeats the law of its neighbour "
         f"with a probability of {repetition:.2g}, the correlation of mean heights. Adhesion is correlated less, so "
         "lengths come out too short, the safe side."
-    )
-
-
-def _repeated_strips_learnt(**numbers):
-    return (
-        f"{_repeated_strips(**numbers)} Test beams are computed in the same way and thus suggest too little adhesion: "
-        "this is the unsafe side."
-    )
-
-
-def _strips_move_alone(play):
-    return (
-        f"Each strip of these beams draws an offset of its own, with a play of {TO_NM * play:.3g} nm, where beams move "
-        "as one body. At a coherence of 0.8 and a play of 35 nm, cracks were 35 % too long at 1 in 20 and 19 % in the "
-        "median, the unsafe side: state a device, whose strips move together."
-    )
-
-
-def _missed_accuracy(reached, asked, key):
-    return (
-        f"The standard error of this length is {in_percent(reached)}, more than the {in_percent(asked)} of "
-        f"design.accuracy.length: state more {key} than this run has, or a larger error there."
-    )
-
-
-def _cut_off_mean(share, mean, length):
-    return (
-        f"Only {100 * share:.4g} % of the beams end S-shaped. Their mean crack length, {TO_UM * mean:.0f} µm, lacks "
-        f"the longer cracks that beams of {TO_UM * length:.0f} µm cut off: it is not the mean of longer beams."
     )
 
 
@@ -166,14 +87,6 @@ def _default_material(name, missing):
     )
 
 
-def _spacer(name):
-    return (
-        f"The coating of {name} counts as a spacer that attracts no more than the air or water around it. Real "
-        "coatings attract, so that this result is on the unsafe side; the one without coating_nm is on the safe side. "
-        f"{COATING_ATTRACTION} includes it."
-    )
-
-
 def _gaps(changes, shorter, side=""):
     by = [
         f"{100 * change:+.2g} ± {100 * error:.1g} %{f' at RH {humidity:g}' * (len(changes) > 1)}"
@@ -182,17 +95,6 @@ def _gaps(changes, shorter, side=""):
     return (
         f"Attraction of solids across gaps is left out. On these surfaces it would change the "
         f"{'length' if shorter else 'force'} that holds by {', '.join(by)}{side}. attraction.reach all includes it."
-    )
-
-
-def _without_gaps(changes, shorter):
-    return _gaps(changes, shorter, ", which is the unsafe side")
-
-
-def _flat_patches(share):
-    return (
-        f"{in_percent(share)} of the patches of surface have too few summits to resist the adhesion. They count as "
-        "flat surfaces in contact, which hold more than any rough ones: the prediction is on the safe side."
     )
 
 
@@ -208,44 +110,7 @@ def _smooth_pair(rms, short):
     )
 
 
-def _unknown_full_contact(humidities):
-    return (
-        f"Full elastic contact does not settle, or takes too long, {airs(humidities)}. Forces then rest on summits: on "
-        f"rough surfaces they are too large, on smooth ones with gentle slopes too small, by up to "
-        f"{in_percent(largest_shortfall())}."
-    )
-
-
-def _few_strips(part):
-    return (
-        f"One strip of surface makes {in_percent(part)} of the squared error of full elastic contact. Others like it "
-        "can be missing, so that the change and its error are themselves hardly known."
-    )
-
-
 # Water
-
-
-def _thin_film(film):
-    return (
-        f"The film of water is {TO_NM * film:.2g} nm high, thinner than {MOLECULES} molecules, "
-        f"{MOLECULES * TO_NM * WATER_MOLECULE:.3g} nm: the air is too dry for the theory of a liquid, and this result "
-        "can be off to either side. Results for dry air and for the next humidity above do not bound it."
-    )
-
-
-def _solid_film(film):
-    return (
-        f"The film of water is {TO_NM * film:.2g} nm high, thinner than {LIQUID} molecules, which are no liquid. The "
-        "answer is the worst of three airs: this one as if it had a liquid, the driest with a liquid film, and dry air."
-    )
-
-
-def _beyond_isotherm(measured, wettest):
-    return (
-        f"Air at RH {wettest:g} is wetter than the wettest of the isotherm, RH {measured:g}. Films grow there and "
-        "count as constant: this is the unsafe side. State water.isotherm up to this humidity."
-    )
 
 
 def _condensing(airs):
@@ -261,21 +126,6 @@ def _supercooled(celsius):
     return (
         f"At {listed} °C water counts as a supercooled liquid, and dew points are those over it. Ice and frost are not "
         "in the model, so that this result can be off to either side."
-    )
-
-
-def _no_water():
-    return (
-        "No water condenses between the surfaces, because the cosines of their contact angles add up to zero or less: "
-        "results at any humidity are those for dry air."
-    )
-
-
-def _wide_meniscus(film, share):
-    return (
-        f"The film of water is up to {TO_UM * film:.3g} µm high, not small against the area in contact: the surface "
-        f"tension along its rim, which is left out, adds up to {100 * share:.3g} % of the force of the film, more than "
-        f"{100 * RIM:.0f} %. Stoppers may hold more than computed, which is the unsafe side."
     )
 
 
@@ -300,21 +150,6 @@ def _large_rotation(crack_length, slope):
     )
 
 
-def _stubby_beam(crack_length, ratio, shorter):
-    return (
-        f"A crack of {TO_UM * crack_length:.0f} µm is only {ratio:.3g} times as long as the beam is thick, less than "
-        f"{SLENDER:.0f}: shear and the compliance of the clamp, which are not in the model, shorten it by about "
-        f"{in_percent(shorter)}."
-    )
-
-
-def _wide_beam(crack_length, ratio):
-    return (
-        f"At a length of {TO_UM * crack_length:.0f} µm, 6 h w² / (t l²) is {ratio:.3g}, above {PLATE:.0f}: the beam "
-        "bends as a plate, with the modulus E / (1 - ν²)."
-    )
-
-
 def _stretched_bridge(ratio):
     size = "equal to the thickness" if f"{ratio:.3g}" == "1" else f"{ratio:.3g} times the thickness"
     return (
@@ -325,10 +160,6 @@ def _stretched_bridge(ratio):
 
 
 # Surfaces
-
-
-def _flag(surface, flag):
-    return f"surface {surface}: {flag}"
 
 
 #: Assumed quantities of a surface: name, unit, and whether their scatter is relative.
@@ -374,37 +205,6 @@ def _unlike_typical(surface, changed):
 # Test beams
 
 
-def _test_beams_contradict(p_value):
-    return (
-        "Neither the errors of the inputs nor those of the model, as stated, explain the test beams (p = "
-        f"{p_value:.1g}): something else is wrong, such as a dimension, a humidity or plastic contact. "
-        "Until it is found, rely neither on the update nor on what is stated without it."
-    )
-
-
-def _model_explains_test_beams(p_value, factor, slope):
-    return (
-        f"The errors of the inputs, as stated, do not explain the test beams (p = {p_value:.1g}); an error of "
-        f"the model does: lengths are {factor:.3g} times as large as computed, with a slope of "
-        f"{slope:+.2g} in the logarithm of the length."
-    )
-
-
-def _cracks_beyond_test_beams(datum, computed, beam_length):
-    return (
-        f"{datum}: computed cracks of {TO_UM * computed:.0f} µm are longer than the beams, "
-        f"{TO_UM * beam_length:.0f} µm: mean lengths of the beams that stick are too short."
-    )
-
-
-def _moved_input(name, score):
-    return f"The test beams move the {name} by {score:+.2g} of its standard uncertainties: check it."
-
-
-def _left_to_the_model(datum, rest):
-    return f"{datum}: {100 * rest:+.2g} % of the length are left to errors of the model at this humidity alone."
-
-
 def _nonlinear_update(different):
     listed = [f"{with_error(100 * apart, 100 * error)} % ({again})" for again, apart, error in different]
     return (
@@ -420,13 +220,6 @@ def _beyond_humidities_of_test_beams(measured, beyond):
     return f"Test beams were measured {' and '.join(where)}: the prediction {airs(beyond)} is an extrapolation."
 
 
-def _beyond_sizes_of_test_beams(size, device, nearest, factor):
-    return (
-        f"The {size} of the device, {TO_UM * device:.3g} µm, differs by more than a factor of {factor:g} from "
-        f"that of the test beams, {TO_UM * nearest:.3g} µm: the prediction is an extrapolation."
-    )
-
-
 def _beyond_adhesion_of_test_beams(result, change):
     words = "longer than the longest" if change > 0 else "shorter than the shortest"
     return (
@@ -437,52 +230,151 @@ def _beyond_adhesion_of_test_beams(result, change):
 
 #: Sentence of each kind, as a function of its numbers.
 SENTENCES: dict[str, Callable[..., str]] = {
-    "arcs_of_elements": _arcs_of_elements,
-    "nothing_simulated": _nothing_simulated,
-    "long_strips_of_bridge": _long_strips_of_bridge,
-    "long_strips": _long_strips,
-    "smoother_than_full_contact": _smoother_than_full_contact,
-    "resampled_strips": _resampled_strips,
-    "lengths_of_sizes": _lengths_of_sizes,
+    # Strips and lengths
+    "arcs_of_elements": lambda share, strip: (
+        f"{100 * share:.4g} % of the beams end as arcs, held by the tip only. This share depends on the strip length, "
+        f"here {TO_UM * strip:.3g} µm. For a realistic share, describe the beam under `devices`, where tips are "
+        "computed on tilted strips."
+    ),
+    "nothing_simulated": lambda is_bridge, **strips: (
+        f"{_longer_strips(**strips, is_bridge=is_bridge)}, by so much that nothing is simulated: every beam "
+        "counts as stuck that a surface made of its strongest patch alone would hold (safe side)."
+    ),
+    "long_strips_of_bridge": lambda **strips: (
+        f"{_longer_strips(**strips, is_bridge=True)}: its lengths may be off to either side. Shorter strips are more "
+        "accurate."
+    ),
+    "long_strips": lambda **strips: (
+        f"{_longer_strips(**strips, is_bridge=False)} within {100 * ACCURACY:.0f} %: they stop too early, by at most "
+        f"{100 * TOO_EARLY:.0f} % where strips are {LONGER:g} times as long, which is the safe side. Shorter strips "
+        "are more accurate."
+    ),
+    "smoother_than_full_contact": lambda: (
+        "smoother surfaces than the given one change more in full elastic contact than is computed, which is the "
+        "unsafe side: give the smoothest surface of the range"
+    ),
+    "resampled_strips": lambda samples: (
+        f"Few strips hold much more than most: the chaos model lacks them, so that strips are drawn from the {samples} "
+        "samples themselves. Strips that are rarer are missing. On two microscope files, lengths from 500 samples were "
+        "up to 3 % longer than lengths from 5000; contact.samples sets their number."
+    ),
+    "lengths_of_sizes": lambda error: (
+        f"Many devices are on this ground: lengths along the beam follow power laws through a few sizes. They err by "
+        f"{error:.1%} at sizes between these. Where they are too long, all lengths are shortened by it."
+    ),
     "repeated_strips": _repeated_strips,
-    "repeated_strips_learnt": _repeated_strips_learnt,
-    "strips_move_alone": _strips_move_alone,
-    "missed_accuracy": _missed_accuracy,
-    "cut_off_mean": _cut_off_mean,
+    "repeated_strips_learnt": lambda **numbers: (
+        f"{_repeated_strips(**numbers)} Test beams are computed in the same way and thus suggest too little adhesion: "
+        "this is the unsafe side."
+    ),
+    "strips_move_alone": lambda play: (
+        f"Each strip of these beams draws an offset of its own, with a play of {TO_NM * play:.3g} nm, where beams move "
+        "as one body. At a coherence of 0.8 and a play of 35 nm, cracks were 35 % too long at 1 in 20 and 19 % in the "
+        "median, the unsafe side: state a device, whose strips move together."
+    ),
+    "missed_accuracy": lambda reached, asked, key: (
+        f"The standard error of this length is {in_percent(reached)}, more than the {in_percent(asked)} of "
+        f"design.accuracy.length: state more {key} than this run has, or a larger error there."
+    ),
+    "cut_off_mean": lambda share, mean, length: (
+        f"Only {100 * share:.4g} % of the beams end S-shaped. Their mean crack length, {TO_UM * mean:.0f} µm, lacks "
+        f"the longer cracks that beams of {TO_UM * length:.0f} µm cut off: it is not the mean of longer beams."
+    ),
+    # Contact
     "plasticity_unchecked": _plasticity_unchecked,
     "plastic_contact": _plastic_contact,
     "default_material": _default_material,
-    "spacer": _spacer,
-    "without_gaps": _without_gaps,
+    "spacer": lambda name: (
+        f"The coating of {name} counts as a spacer that attracts no more than the air or water around it. Real "
+        "coatings attract, so that this result is on the unsafe side; the one without coating_nm is on the safe side. "
+        f"{COATING_ATTRACTION} includes it."
+    ),
+    "without_gaps": lambda changes, shorter: _gaps(changes, shorter, ", which is the unsafe side"),
     "without_gaps_safe": _gaps,
-    "flat_patches": _flat_patches,
+    "flat_patches": lambda share: (
+        f"{in_percent(share)} of the patches of surface have too few summits to resist the adhesion. They count as "
+        "flat surfaces in contact, which hold more than any rough ones: the prediction is on the safe side."
+    ),
     "smooth_pair": _smooth_pair,
-    "unknown_full_contact": _unknown_full_contact,
-    "few_strips": _few_strips,
-    "thin_film": _thin_film,
-    "solid_film": _solid_film,
-    "beyond_isotherm": _beyond_isotherm,
+    "unknown_full_contact": lambda humidities: (
+        f"Full elastic contact does not settle, or takes too long, {airs(humidities)}. Forces then rest on summits: on "
+        f"rough surfaces they are too large, on smooth ones with gentle slopes too small, by up to "
+        f"{in_percent(largest_shortfall())}."
+    ),
+    "few_strips": lambda share: (
+        f"One strip of surface makes {in_percent(share)} of the squared error of full elastic contact. Others like it "
+        "can be missing, so that the change and its error are themselves hardly known."
+    ),
+    # Water
+    "thin_film": lambda film: (
+        f"The film of water is {TO_NM * film:.2g} nm high, thinner than {MOLECULES} molecules, "
+        f"{MOLECULES * TO_NM * WATER_MOLECULE:.3g} nm: the air is too dry for the theory of a liquid, and this result "
+        "can be off to either side. Results for dry air and for the next humidity above do not bound it."
+    ),
+    "solid_film": lambda film: (
+        f"The film of water is {TO_NM * film:.2g} nm high, thinner than {LIQUID} molecules, which are no liquid. The "
+        "answer is the worst of three airs: this one as if it had a liquid, the driest with a liquid film, and dry air."
+    ),
+    "beyond_isotherm": lambda measured, wettest: (
+        f"Air at RH {wettest:g} is wetter than the wettest of the isotherm, RH {measured:g}. Films grow there and "
+        "count as constant: this is the unsafe side. State water.isotherm up to this humidity."
+    ),
     "condensing": _condensing,
     "supercooled": _supercooled,
-    "no_water": _no_water,
-    "wide_meniscus": _wide_meniscus,
+    "no_water": lambda: (
+        "No water condenses between the surfaces, because the cosines of their contact angles add up to zero or less: "
+        "results at any humidity are those for dry air."
+    ),
+    "wide_meniscus": lambda film, share: (
+        f"The film of water is up to {TO_UM * film:.3g} µm high, not small against the area in contact: the surface "
+        f"tension along its rim, which is left out, adds up to {100 * share:.3g} % of the force of the film, more than "
+        f"{100 * RIM:.0f} %. Stoppers may hold more than computed, which is the unsafe side."
+    ),
     "filled_gap": _filled_gap,
+    # Beams
     "large_rotation": _large_rotation,
-    "stubby_beam": _stubby_beam,
-    "wide_beam": _wide_beam,
+    "stubby_beam": lambda crack_length, ratio, shorter: (
+        f"A crack of {TO_UM * crack_length:.0f} µm is only {ratio:.3g} times as long as the beam is thick, less than "
+        f"{SLENDER:.0f}: shear and the compliance of the clamp, which are not in the model, shorten it by about "
+        f"{in_percent(shorter)}."
+    ),
+    "wide_beam": lambda crack_length, ratio: (
+        f"At a length of {TO_UM * crack_length:.0f} µm, 6 h w² / (t l²) is {ratio:.3g}, above {PLATE:.0f}: the beam "
+        "bends as a plate, with the modulus E / (1 - ν²)."
+    ),
     "stretched_bridge": _stretched_bridge,
-    **dict.fromkeys(SIDES, _flag),
+    # Surfaces
+    **dict.fromkeys(SIDES, lambda surface, flag: f"surface {surface}: {flag}"),
     "assumed_surface": _assumed_surface,
     "assumed_without_scatter": _assumed_without_scatter,
     "unlike_typical": _unlike_typical,
-    "test_beams_contradict": _test_beams_contradict,
-    "model_explains_test_beams": _model_explains_test_beams,
-    "cracks_beyond_test_beams": _cracks_beyond_test_beams,
-    "moved_input": _moved_input,
-    "left_to_the_model": _left_to_the_model,
+    # Test beams
+    "test_beams_contradict": lambda p_value: (
+        "Neither the errors of the inputs nor those of the model, as stated, explain the test beams (p = "
+        f"{p_value:.1g}): something else is wrong, such as a dimension, a humidity or plastic contact. "
+        "Until it is found, rely neither on the update nor on what is stated without it."
+    ),
+    "model_explains_test_beams": lambda p_value, factor, slope: (
+        f"The errors of the inputs, as stated, do not explain the test beams (p = {p_value:.1g}); an error of "
+        f"the model does: lengths are {factor:.3g} times as large as computed, with a slope of "
+        f"{slope:+.2g} in the logarithm of the length."
+    ),
+    "cracks_beyond_test_beams": lambda datum, computed, beam_length: (
+        f"{datum}: computed cracks of {TO_UM * computed:.0f} µm are longer than the beams, "
+        f"{TO_UM * beam_length:.0f} µm: mean lengths of the beams that stick are too short."
+    ),
+    "moved_input": lambda name, score: (
+        f"The test beams move the {name} by {score:+.2g} of its standard uncertainties: check it."
+    ),
+    "left_to_the_model": lambda datum, rest: (
+        f"{datum}: {100 * rest:+.2g} % of the length are left to errors of the model at this humidity alone."
+    ),
     "nonlinear_update": _nonlinear_update,
     "beyond_humidities_of_test_beams": _beyond_humidities_of_test_beams,
-    "beyond_sizes_of_test_beams": _beyond_sizes_of_test_beams,
+    "beyond_sizes_of_test_beams": lambda size, device, nearest, factor: (
+        f"The {size} of the device, {TO_UM * device:.3g} µm, differs by more than a factor of {factor:g} from "
+        f"that of the test beams, {TO_UM * nearest:.3g} µm: the prediction is an extrapolation."
+    ),
     "beyond_adhesion_of_test_beams": _beyond_adhesion_of_test_beams,
 }
 

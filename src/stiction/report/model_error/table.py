@@ -21,8 +21,9 @@ from stiction.report.style import (
     at_most_double,
     columns_of_panels,
     figure_stage,
+    handles,
     humidity_axis,
-    legends,
+    legend_outside,
     letter_lines,
     styled,
 )
@@ -120,10 +121,14 @@ _COLUMNS = PAIR | {
 }
 
 
-@styled
 def figure(*data) -> Figure:
     """Error of the model against humidity, and deviations from the published lengths. Parameters as in ``_rows``."""
-    frame = pd.DataFrame(_rows(*data))
+    return drawn(pd.DataFrame(_rows(*data)))
+
+
+@styled
+def drawn(frame: pd.DataFrame) -> Figure:
+    """Error of the model against humidity, and deviations from the published lengths, from the frame of the table."""
     pairs = list(dict.fromkeys(frame.pair))
     count = 2 if frame.published_um.notna().any() else 1
     figure, columns, lines = columns_of_panels(
@@ -134,7 +139,7 @@ def figure(*data) -> Figure:
     for line in lines:
         for panel, shows in zip(line[:, 0], ("model error of $l_s$ [%]", "deviation from published [%]"), strict=False):
             panel.set_ylabel(shows)
-    legends(figure, {panel: {} for line in lines for panel in line[:, 0]})
+    legend_outside(figure, handles(*columns.flat), "lower", 3)
     letter_lines(lines, [f"pair {pair}" for pair in pairs])
     return figure
 
@@ -145,20 +150,20 @@ def _panels(column, rows):
     style = {"color": MODELS["NG"]["color"]}
     column[0].plot(rows.relative_humidity, rows.model_error_percent, linestyle=":", label="interpolated", **style)
     points = computed.relative_humidity, computed.model_error_percent, computed.model_error_se_percent
-    column[0].errorbar(*points, fmt="o", label="full contact", **style)
+    column[0].errorbar(*points, fmt="o", label="full contact ± standard error", **style)
     of_beams = rows.relative_humidity, rows.beams_change_percent, rows.beams_change_se_percent
     if rows.beams_change_percent.notna().any():
-        column[0].errorbar(*of_beams, fmt="x", color="black", label="beams on corrected laws")
+        column[0].errorbar(*of_beams, fmt="x", color="black", label="beams on corrected laws ± standard error")
     if len(column) > 1:
-        summits = {"linestyle": "--", "marker": "s", "markerfacecolor": "white", "label": "sum over summits"}
+        summits = {"linestyle": "--", "marker": "s", "markerfacecolor": "white", "label": "deviation, sum over summits"}
         column[1].plot(compared.relative_humidity, compared.deviation_percent, **summits, **style)
-        full = {"linestyle": "-", "marker": "o", "label": "full contact"}
+        full = {"linestyle": "-", "marker": "o", "label": "deviation, full contact"}
         column[1].plot(compared.relative_humidity, compared.full_contact_deviation_percent, **full, **style)
         measured = (
             percent(compared.experiment_um / compared.published_um, 1),
             100 * compared.experiment_std_um / compared.published_um,
         )
-        column[1].errorbar(compared.relative_humidity, *measured, fmt="*", color=PUBLISHED, label="measured")
+        column[1].errorbar(compared.relative_humidity, *measured, fmt="*", color=PUBLISHED, label="measured ± std")
     column[-1].set_xlabel("relative humidity [–]")
     for panel in column:
         panel.axhline(0, color="0.6", linewidth=0.6, zorder=0)

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from stiction.report.format import PER_UM2, TO_NM, TO_UM, UM, with_error
-from stiction.report.style import DOUBLE, MODELS, OUTLINED, figure_stage, letter, panels, styled
+from stiction.report.style import DOUBLE, MODELS, OUTLINED, figure_stage, letter, page_width, panels, styled
 from stiction.scans.levelling import Levelling, level
 from stiction.scans.scan import Scan
 from stiction.stages.surfaces import estimate as stage_estimate
@@ -23,7 +23,7 @@ _CORNER = {"fontsize": 7, "path_effects": OUTLINED}
 _SLOW = {"color": "0.5", "linewidth": 0.5}
 #: Colours of the map saturate at this number of rms; decades of densities below their largest value, factor above it.
 _SATURATED, _DECADES, _HEADROOM = 3, 6, 60
-#: Characters of a line of sentences, height of a line and of the panels with their title [in].
+#: Characters of a line of sentences in two columns of a journal, height of a line and of the panels with titles [in].
 _LINE, _LINE_HEIGHT, _PANELS = 150, 0.125, 5.92
 
 
@@ -34,7 +34,7 @@ def surface_sheet(surface: str, estimate: xr.Dataset, spectrum: xr.Dataset | Non
     The spectrum, of which the flags are shown, is that of a surface that is simulated.
     """
     lines = _lines(surface_flags.flags(*(data for data in (estimate, spectrum) if data is not None)))
-    lines = [*lines, _minus(_of_errors(estimate))]
+    lines = [*lines, *_wrapped(_minus(_of_errors(estimate)))]
     figure, axes = panels(2, 2, (DOUBLE, _PANELS + _LINE_HEIGHT * len(lines)))
     _map(figure, axes[0, 0], estimate)
     _density(axes[0, 1], estimate)
@@ -65,8 +65,13 @@ def _lines(sentences: Sequence[str]):
     """Sentences as lines of text, each with a mark."""
     if not sentences:
         return ["No flags."]
-    wrapped = {"width": _LINE, "initial_indent": "– ", "subsequent_indent": "   "}
-    return [line for sentence in sentences for line in textwrap.wrap(sentence, **wrapped)]
+    return [line for sentence in sentences for line in _wrapped(sentence, "– ", "   ")]
+
+
+def _wrapped(text, first="", further=""):
+    """Lines of a text that fit across a figure."""
+    width = int(_LINE * page_width(DOUBLE) / DOUBLE)
+    return textwrap.wrap(text, width, initial_indent=first, subsequent_indent=further)
 
 
 def _title(name, estimate):
@@ -78,7 +83,7 @@ def _title(name, estimate):
         f"kurtosis {with_error(kurtosis, errors[2])}"
     )
     scans = " and ".join(_scans(*each) for each in stage_estimate.frames(estimate))
-    return f"{name}: {scans}\n{_minus(numbers)}"
+    return "\n".join([*_wrapped(f"{name}: {scans}"), *_wrapped(_minus(numbers))])
 
 
 def _of_errors(estimate):

@@ -47,6 +47,8 @@ from stiction.stages.laws.stored_model import chaos_model
 _ZERO = {"color": "0.6", "linewidth": 0.6, "zorder": 0}
 #: Difference of Γ from ē [%] that the paper states for its elements.
 _PAPER_ERROR = 2.5
+#: End of the axis of the errors of meshes over their largest, with room for a legend.
+_HEADROOM = 30
 #: Number of summits per cell that is drawn in white; a single summit is a little darker.
 _FAINTEST = 0.3
 _BOUND = {"color": "0.4", "linestyle": ":"}
@@ -83,8 +85,9 @@ def sensitivities(
         of_pair = {moment: dataset for (name, moment), dataset in datasets.items() if name == pair}
         _slopes_of_pair(axes, of_pair, {tuple(at): slope for (name, *at), slope in published.items() if name == pair})
     names = [f", pair {pair}" for pair in pairs] if len(pairs) > 1 else [""]
+    moments, names_of_moments = handles(lines[0, 1])
     marks = [Line2D([], [], color="0.3", **style) for style in _SIDES.values()]
-    legend_outside(figure, (marks, list(_SIDES)), "lower", 2)
+    legend_outside(figure, (moments + marks, names_of_moments + list(_SIDES)), "lower", 3)
     letter(lines, [rf"{statistic} of $\bar e${name}" for name in names for statistic in _STATISTICS])
     return figure
 
@@ -94,7 +97,7 @@ def _slopes_of_pair(axes, datasets, published):
     for panel, statistic in zip(axes, _STATISTICS, strict=True):
         for k, (moment, dataset) in enumerate(datasets.items()):
             chosen = dataset.sel(statistic=statistic)
-            style = {"marker": marker(k), "linestyle": dashes(k), "label": moment}
+            style = {"marker": marker(k), "linestyle": dashes(k), "label": f"{moment}, ± standard error"}
             panel.errorbar(chosen.humidity, chosen.slope, chosen.standard_error, **style)
         panel.axhline(0, **_ZERO)
         panel.set(xlabel="relative humidity [–]", ylabel="normalised sensitivity [–]")
@@ -110,7 +113,6 @@ def _slopes_of_pair(axes, datasets, published):
     humidity_axis(axes[0])
     for (moment, humidity), slope in published.items():
         _beside(axes[0], f"paper, {moment}", (humidity, slope))
-    axes[1].legend(loc="lower right")
 
 
 def _beside(panel, text, point):
@@ -181,7 +183,7 @@ def sample_convergence(
     figure, (axes,) = panels(1, 3, (DOUBLE, 2.4), width_ratios=(1.3, 1, 1))
     _densities(axes[0], sizes)
     most = _dimension_errors(axes[1], dimension_errors)
-    axes[1].axhline(tolerance, **_BOUND, label="tolerance")
+    axes[1].axhline(tolerance, **_BOUND, label=f"tolerance,\nabove: {most + 1} kept")
     low, high = axes[1].get_ylim()
     axes[1].set_ylim(min(low, tolerance / 2), 10 * max(high, tolerance))  # room for the legend
     _distances(axes[2], sizes)
@@ -306,7 +308,7 @@ def _ground(panel, mesh):
 def _meshes(panel, mesh):
     """Relative difference of Γ under every mesh from ē, beside the one stated in the paper."""
     excess = 100 * (mesh.energy.values / float(forcelaw.energy(mesh.law.values)) - 1)
-    panel.axhspan(-_PAPER_ERROR, _PAPER_ERROR, color="0.92", zorder=0, label=f"{_PAPER_ERROR} %, paper")
+    panel.axhspan(-_PAPER_ERROR, _PAPER_ERROR, color="0.92", zorder=0, label=f"± {_PAPER_ERROR} %, paper: linear scale")
     points = np.unique(mesh.point_distance.values)[::-1]
     for k, (point, shade) in enumerate(zip(points, shades(len(points)), strict=True)):
         chosen = mesh.point_distance.values == point
@@ -320,7 +322,7 @@ def _meshes(panel, mesh):
     panel.axhline(0, **_ZERO)
     panel.set_yscale("symlog", linthresh=_PAPER_ERROR, linscale=0.5)
     panel.yaxis.set_major_formatter("{x:g}")
-    panel.set_ylim(1.3 * np.nanmin(excess, initial=-1), 1.5 * np.nanmax(excess, initial=_PAPER_ERROR))
+    panel.set_ylim(1.3 * np.nanmin(excess, initial=-1), _HEADROOM * np.nanmax(excess, initial=_PAPER_ERROR))
     panel.set(xscale="log", xlabel="element length $l_e$ [µm]", ylabel=r"$\Gamma/\bar e - 1$ [%]")
     # Set limits: a beam that does not stick under this law has no points.
     panel.set_xlim(TO_UM * mesh.element_length.values.min() / 1.2, 1.2 * TO_UM * mesh.element_length.values.max())
@@ -347,7 +349,7 @@ def variants(datasets: Mapping[tuple[str, str], xr.Dataset], published: pd.DataF
         cases = {name: next(cases_of(datasets[pair, name]))[1] for name in names if name != "base"}
         length = TO_UM * comparison.mean_crack_length(base)[0]
         dots.references(panel, length, "base", rows(published, pair=pair, relative_humidity=humidity))
-        dots.draw(panel, {variant_label(name): [_shift(case, base)] for name, case in cases.items()})
+        dots.draw(panel, {variant_label(name): [_shift(case, base)] for name, case in cases.items()}, column="")
         panel.set_xlabel("change of $l_s$ [%]")
         titles.append(f"pair {pair}, {Air(humidity).words}")
     letter_lines(lines, titles)
@@ -358,7 +360,7 @@ def variants(datasets: Mapping[tuple[str, str], xr.Dataset], published: pd.DataF
 def _shift(case, base):
     """Change of the crack length by a variant, relative to the base [%]."""
     shift, error = 100 * np.divide(comparison.shift(case, base), comparison.mean_crack_length(base)[0])
-    return dots.Mark(shift, shift, "#0072B2", dots.signed(shift), error)
+    return dots.Mark(shift, shift, "#0072B2", dots.signed(shift), error, "variant ± standard error")
 
 
 def _sensitivities(data, settings):

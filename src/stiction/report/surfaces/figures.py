@@ -20,6 +20,7 @@ from stiction.report.style import (
     dashes,
     figure_stage,
     handles,
+    is_page,
     legend_outside,
     letter,
     letter_lines,
@@ -32,6 +33,8 @@ from stiction.report.style import (
 
 #: Bins along either axis of the joint density of summits.
 _BINS = 40
+#: Height of a line of densities on a page, and of maps of surfaces [in].
+_HIGH, _MAP = 1.5, 2.2
 #: Decades of the densities of the heights below their largest value.
 _DECADES = 6
 
@@ -45,7 +48,11 @@ def height_densities(heights: Mapping[str, xr.Dataset]) -> Figure:
 
     The datasets are by surface, each in a column.
     """
-    figure, columns, lines = columns_of_panels(len(heights), 2, _width, 3.4, sharex="col")
+    if is_page():  # both panels of a surface side by side
+        figure, columns = panels(len(heights), 2, (DOUBLE, _HIGH * len(heights)), beside=True)
+        lines = [row[None] for row in columns]
+    else:
+        figure, columns, lines = columns_of_panels(len(heights), 2, _width, 3.4, sharex="col")
     for column, dataset in zip(columns, heights.values(), strict=True):
         for panel in column:
             _density(panel, dataset)
@@ -54,7 +61,10 @@ def height_densities(heights: Mapping[str, xr.Dataset]) -> Figure:
         column[1].set_xlabel("height $z$ [nm]")
     for panel in np.concatenate([line[:, 0] for line in lines]):
         panel.set_ylabel("density $p_Z$ [nm$^{-1}$]")
-    letter_lines(lines, heights)
+    if is_page():
+        letter(columns, [f"{name}{scale}" for name in heights for scale in ("", ", logarithmic")])
+    else:
+        letter_lines(lines, heights)
     figure.legend(*columns[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=2)
     return figure
 
@@ -100,12 +110,14 @@ def elevation_maps(characters: Mapping[str, xr.Dataset]) -> Figure:
     """Figure 8: a piece of every simulated surface, by its name, seen from above."""
     columns = min(2, len(characters))
     rows = -(-len(characters) // columns)
-    figure, axes = panels(rows, columns, (SINGLE * columns, 2.9 * rows))
+    figure, axes = panels(rows, columns, (SINGLE * columns / 2, _MAP * rows), beside=True)
     for panel, dataset in zip(axes.flat, characters.values(), strict=False):
         extent = [0, TO_UM * float(dataset.x[-1] + dataset.x[1]), 0, TO_UM * float(dataset.y[-1] + dataset.y[1])]
         image = panel.imshow(TO_NM * dataset.elevation.values.T, origin="lower", extent=extent)
-        figure.colorbar(image, ax=panel, label="height $z$ [nm]", shrink=0.9)
+        bar = figure.colorbar(image, ax=panel, label="height $z$ [nm]", orientation="horizontal", pad=0.02, aspect=14)
+        bar.ax.xaxis.set_major_locator(MaxNLocator(4))
         panel.set(xlabel="$x_1$ [µm]", ylabel="$x_2$ [µm]")
+        panel.locator_params(nbins=3)
     letter(axes.flat[: len(characters)], list(characters))
     for unused in axes.flat[len(characters) :]:
         unused.remove()
@@ -208,8 +220,8 @@ def summits(characters: Mapping[str, Mapping[str, xr.Dataset]]) -> Figure:
             image = panel.pcolormesh(edges[0], 10 ** edges[1], filled, norm=shades, cmap="cividis_r")
             panel.set(yscale="log", xlabel="summit height [nm]")
             plain_log(panel.yaxis)
+            panel.set_ylabel("summit radius [µm]")
             _mean_radius(panel, 1 / np.mean(10 ** -pair[1]))
-        row[0].set_ylabel("summit radius [µm]")
         figure.colorbar(image, ax=row, label="density [nm$^{-1}$ decade$^{-1}$]")
     letter(axes, [f"{name}, {MODELS[model]['label']}" for name in characters for model in SURFACE_MODELS])
     return figure
@@ -228,7 +240,7 @@ def _mean_radius(panel, radius):
         panel.get_yaxis_transform(),
         {"ha": "right", "va": "bottom", "fontsize": 7, "path_effects": OUTLINED},
     )
-    panel.annotate(f"{number} µm", (0.96, radius), (0, 3), transform, "offset points", **style)
+    panel.annotate(f"1 / mean curvature: {number} µm", (0.98, radius), (0, 3), transform, "offset points", **style)
 
 
 def _datasets_by_surface(data):

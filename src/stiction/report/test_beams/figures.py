@@ -55,9 +55,10 @@ def test_beams(update: xr.Dataset) -> Figure:
         shared |= _lengths(panel, update.isel(chosen), _ROOM * (len(arrays) + 1))
     if arrays:
         axes[0, 0].set_ylabel("crack length [µm]")
-    _inputs(axes[0, -1], moved)
+    _inputs(axes[0, -1], moved, _names(moved, arrays))
     legend_below(axes[0, -1], _explained())
-    letter(axes, [*arrays, f"inputs; {others} others hardly move" if others else "inputs"])
+    named = arrays if len(arrays) > 1 else ["crack lengths of test beams"] * len(arrays)
+    letter(axes, [*named, f"inputs; {others} others hardly move" if others else "inputs"])
     legend_outside(figure, (list(shared.values()), list(shared)), "lower", 3)
     return figure
 
@@ -69,6 +70,12 @@ def _moved(update):
     kept = np.flatnonzero(changes.fillna(0).values > _UNMOVED)
     kept = kept if len(kept) else np.flatnonzero(prior.notnull().values)[:1]
     return update.isel(input=kept), int(prior.notnull().sum()) - len(kept)
+
+
+def _names(moved, arrays):
+    """Names of inputs, without that of the test beams where there are no others."""
+    names = list(map(str, moved.input.values))
+    return [name.replace(f" of {arrays[0]}", " of test beams") for name in names] if len(arrays) == 1 else names
 
 
 def _band(humidity, indices, placed):
@@ -130,8 +137,8 @@ def _explained():
     return [Patch(color=colour, alpha=0.6, label=f"{name}, ± 1 standard uncertainty") for name, colour in bars]
 
 
-def _inputs(panel, uncertain):
-    """Inputs before and after, in standard uncertainties before the measurement."""
+def _inputs(panel, uncertain, names):
+    """Inputs of some names before and after, in standard uncertainties before the measurement."""
     places = np.arange(uncertain.sizes["input"])
     scale = uncertain.prior_deviation.values
     for centre, deviation, colour, half in (
@@ -140,7 +147,7 @@ def _inputs(panel, uncertain):
     ):
         panel.barh(places, 2 * deviation, 2 * half, left=centre - deviation, color=colour, alpha=0.6, linewidth=0)
     panel.axvline(0, color="black", linewidth=0.6)
-    panel.set_yticks(places, list(uncertain.input.values))
+    panel.set_yticks(places, names)
     panel.tick_params(axis="y", length=0)
     panel.use_sticky_edges = False
     panel.autoscale_view(scaley=False)

@@ -293,7 +293,7 @@ def _number(value, deviation):
 
 
 _COLUMNS = DEVICE | {
-    "what": (lambda part, name: f"{name}: {part}", "part", "name"),
+    "what": (lambda share, name: f"{name}: {share}", "part", "name"),
     "before": (_number, "before", "before_std"),
     "after": (_number, "after", "after_std"),
     "measured": (

@@ -167,42 +167,41 @@ def _forbidden(data, unknowns):
 
 # Dataset
 
-#: Fields of an answer that are numbers, with the unit of the size or none.
+#: Fields of an answer that are sizes, whose unit is stated here, and others.
 _SIZES = ("build", "exact", "size", "if_measured", "without_test_beams")
 _NUMBERS = ("share", "spread_of_budget")
 _TEXTS, _LISTS = ("device", "kind", "measure"), ("left_out", "forbidden")
 _STUCK = ("value", "low", "high", "none_seen")
-#: Rows of an answer by the dimension of their dataset.
-_STEPS = {"size": True, "factor": False, "humidity": False, "shape": None, "source": None, "stated": None}
-_AIRS = {"build": None, "without_tip": None, "first": None, "temperature": "K"}
+#: Fields of its steps beside their size, and of its airs.
+_STEPS = ("factor", "humidity", "shape", "source", "stated")
+_AIRS = ("build", "without_tip", "first", "temperature")
 
 
 def layout(answer: Answer) -> xr.Dataset:
     """Dataset of an answer: steps along ``step``, stated airs along ``air``."""
-    size, none = {"units": answer.unit}, {"units": "1"}
+    size = {"units": answer.unit}
     variables = {name: ((), getattr(answer, name), size) for name in _SIZES}
-    variables |= {name: ((), getattr(answer, name), none) for name in _NUMBERS}
-    variables |= {"touchdowns": ((), answer.touchdowns, none), "extrapolated": ((), int(answer.extrapolated))}
+    variables |= {name: ((), getattr(answer, name)) for name in _NUMBERS}
+    variables |= {"touchdowns": ((), answer.touchdowns), "extrapolated": ((), int(answer.extrapolated))}
     variables |= {name: (name, np.array(getattr(answer, name), dtype=object)) for name in _LISTS}
-    for name, is_size in _STEPS.items():
+    variables["step_size"] = ("step", np.array([step.size for step in answer.steps]), size)
+    for name in _STEPS:
         values = [getattr(step, name) for step in answer.steps]
-        note = {} if is_size is None else size if is_size else none
-        variables[f"step_{name}"] = ("step", np.array(values, dtype=int if name == "stated" else None), note)
-    for name, unit in _AIRS.items():
-        note = {"units": unit} if unit else size
-        variables[f"air_{name}"] = ("air", [getattr(air, name) for air in answer.airs], note)
+        variables[f"step_{name}"] = ("step", np.array(values, dtype=int if name == "stated" else None))
+    for name in _AIRS:
+        variables[f"air_{name}"] = ("air", [getattr(air, name) for air in answer.airs], size)
     for name in _STUCK:
         every = [answer.stuck, *(air.stuck for air in answer.airs)]
         at = [np.nan if stuck is None else float(getattr(stuck, name)) for stuck in every]
-        variables[f"stuck_{name}"] = ((), at[0], none)
-        variables[f"air_stuck_{name}"] = ("air", at[1:], none)
-    curves, note = [air.curve for air in answer.airs], none | {"long_name": "P(stuck) with its 95 % band"}
-    variables |= {"air_curve": (("air", "end", "point"), curves, note), "curve": (("end", "point"), answer.curve, note)}
+        variables[f"stuck_{name}"] = ((), at[0])
+        variables[f"air_stuck_{name}"] = ("air", at[1:])
+    curves = [air.curve for air in answer.airs]
+    variables |= {"air_curve": (("air", "end", "point"), curves), "curve": (("end", "point"), answer.curve)}
     variables["curve_size"] = "point", answer.sizes, size
     if answer.stays:
         inside = [[int(air.humidity in stay.humidities) for air in answer.airs] for stay in answer.stays]
-        variables |= {"stay_air": (("stay", "air"), inside, none)}
-        variables |= {"stay_touchdowns": ("stay", [stay.touchdowns for stay in answer.stays], none)}
+        variables |= {"stay_air": (("stay", "air"), inside)}
+        variables |= {"stay_touchdowns": ("stay", [stay.touchdowns for stay in answer.stays])}
     variables |= _of_places(answer.pull_offs) | _beside(answer, size)
     coords = {"step": [str(step.cause) for step in answer.steps], "air": [air.humidity for air in answer.airs]}
     coords["end"] = ["value", "low", "high"]
@@ -213,11 +212,13 @@ def _beside(answer, size):
     """Variables of the stricter sizes beside the size to build, none where there is none."""
     variables = {}
     if answer.between:
-        variables |= {"between_humidity": ((), answer.between.humidity, {"units": "1"})}
-        variables |= {"between_size": ((), answer.between.size, size)}
+        variables |= {"between_humidity": ((), answer.between.humidity)}
+        variables |= {f"between_{name}": ((), getattr(answer.between, name), size) for name in ("size", "safe")}
     if answer.unasked:
-        variables |= {f"unasked_{name}": ("unasked", [getattr(one, name) for one in answer.unasked]) for name in _NAMED}
-        variables |= {"unasked_size": ("unasked", [one.size for one in answer.unasked], size)}
+        variables |= {
+            f"unasked_{name}": ("unasked", [getattr(limit, name) for limit in answer.unasked]) for name in _NAMED
+        }
+        variables |= {"unasked_size": ("unasked", [limit.size for limit in answer.unasked], size)}
     return variables
 
 
@@ -239,12 +240,11 @@ def _of_places(pull_offs):
     """Variables of pull-off forces by air, none for a device that is not asked for them."""
     if not pull_offs:
         return {}
-    newton, none = {"units": "N"}, {"units": "1"}
     ranks = [[_numbers(getattr(forces, name)) for forces in pull_offs] for name in _RANKS]
-    variables = {name: (("air", "end"), rank, none) for name, rank in zip(_RANKS, ranks, strict=True)}
-    variables["place_pull_off"] = (("air", "share_below", "end"), [forces.quantiles for forces in pull_offs], newton)
-    variables["measured_error"] = ("air", [forces.error for forces in pull_offs], newton)
-    return variables | {"share_below": ("share_below", list(places.SHARES), none)}
+    variables = {name: (("air", "end"), rank) for name, rank in zip(_RANKS, ranks, strict=True)}
+    variables["place_pull_off"] = (("air", "share_below", "end"), [forces.quantiles for forces in pull_offs])
+    variables["measured_error"] = ("air", [forces.error for forces in pull_offs])
+    return variables | {"share_below": ("share_below", list(places.SHARES))}
 
 
 def _numbers(probability):
@@ -303,7 +303,9 @@ def answer_of(dataset: xr.Dataset) -> Answer:
 
 def _between(dataset):
     """Stricter size of an air between the stated ones of a dataset, none where it has none."""
-    return Between(float(dataset.between_humidity), float(dataset.between_size)) if "between_size" in dataset else None
+    if "between_size" not in dataset:
+        return None
+    return Between(*(float(dataset[f"between_{name}"]) for name in ("humidity", "size", "safe")))
 
 
 def _stays(dataset):

@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from stiction.contact.air import humid
+from stiction.config.units import from_si
 from stiction.estimate.answer import CONFIDENCES, in_one_air
 from stiction.estimate.complete import question_of
+from stiction.estimate.dry import POLYSILICON
 from stiction.estimate.force import Stopper
 from stiction.estimate.length import NotLearnt
 from stiction.estimate.question import Question
@@ -47,8 +48,8 @@ class AskedSurface:
     @property
     def numbers(self) -> dict[str, float]:
         """All of its numbers by name, in SI."""
-        own = asdict(self)
-        return own.pop("published_psd") | own
+        numbers = asdict(self)
+        return numbers.pop("published_psd") | numbers
 
 
 @dataclass(frozen=True)
@@ -60,6 +61,7 @@ class AskedCantilever:
     thickness: float  #: [m]
     gap: float  #: [m]
     width: float  #: [m]
+    hamaker_constant: float = POLYSILICON  #: of the solids in dry air [J]
 
     @property
     def sides(self) -> list[AskedSurface]:
@@ -69,12 +71,13 @@ class AskedCantilever:
     @property
     def sizes(self) -> dict[str, Any]:
         """Variables of its own numbers."""
-        return {name: ((), getattr(self, name)) for name in ("thickness", "gap", "width")}
+        return {name: ((), getattr(self, name)) for name in ("thickness", "gap", "width")} | _own(self)
 
     def question(self, air: float) -> Question:
         """Question about one air [-]."""
         surfaces, exact = tuple(side.heights for side in self.sides), ({}, {})
-        return Question("", surfaces, exact, (air,), self.thickness, self.gap, self.width)
+        sizes = self.thickness, self.gap, self.width
+        return Question("", surfaces, exact, (air,), *sizes, constant=self.hamaker_constant)
 
 
 @dataclass(frozen=True)
@@ -92,6 +95,7 @@ class AskedStopper:
     beam: AskedSurface
     substrate: AskedSurface
     contact: tuple[float, float]  #: sides of its area [m]
+    hamaker_constant: float = POLYSILICON  #: of the solids in dry air [J]
 
     @property
     def sides(self) -> list[AskedSurface]:
@@ -101,11 +105,18 @@ class AskedStopper:
     @property
     def sizes(self) -> dict[str, Any]:
         """Variables of its own numbers."""
-        return {"contact": ("direction", list(self.contact)), "direction": ["x", "y"]}
+        return {"contact": ("direction", list(self.contact)), "direction": ["x", "y"]} | _own(self)
 
     def question(self, air: float) -> Stopper:
         """Question about one air [-]."""
-        return Stopper("", tuple(side.heights for side in self.sides), ({}, {}), (air,), self.contact)
+        surfaces = tuple(side.heights for side in self.sides)
+        return Stopper("", surfaces, ({}, {}), (air,), self.contact, constant=self.hamaker_constant)
+
+
+def _own(asked):
+    """Variable of a Hamaker constant that differs from that of polysilicon."""
+    own = asked.hamaker_constant
+    return {} if own == POLYSILICON else {"hamaker_constant": ((), own, {"units": "J"})}
 
 
 @dataclass(frozen=True)
@@ -124,31 +135,30 @@ def compute(lengths: Mapping[float, xr.Dataset], settings: Settings) -> xr.Datas
     """Lengths of a run and of the estimate, by humidity and fraction of stuck devices."""
     runs = {}
     for air, of_air in lengths.items():
-        one = of_air.sel(shape=EITHER)
-        error = np.hypot(one.beams_error, one.surfaces_error.fillna(0))
-        runs[air] = one.estimate.where(np.isfinite(one.estimate)), error
-    return _beside(runs, settings, "length", "m")
+        in_either = of_air.sel(shape=EITHER)
+        error = np.hypot(in_either.beams_error, in_either.surfaces_error.fillna(0))
+        runs[air] = in_either.estimate.where(np.isfinite(in_either.estimate)), error
+    return _beside(runs, settings, "length")
 
 
 def compute_stopper(stopper: xr.Dataset, settings: SettingsOfStopper) -> xr.Dataset:
     """Forces of a run and of the estimate, by humidity and fraction of stuck devices."""
     forces = stopper.safe_force
     runs = {air: tuple(forces.sel(humidity=air, part=["estimate", "error"])) for air in forces.humidity.values}
-    return _beside(runs, settings, "force", "N")
+    return _beside(runs, settings, "force")
 
 
-def _beside(runs: Runs, settings: Settings | SettingsOfStopper, name: str, unit: str) -> xr.Dataset:
-    """Sizes of a run, with their name and unit, and of the estimate."""
+def _beside(runs: Runs, settings: Settings | SettingsOfStopper, name: str) -> xr.Dataset:
+    """Sizes of a run, with their name, and of the estimate."""
     shares = next(iter(runs.values()))[0].share.values
     refused, estimates = zip(*(_estimated(settings, air, shares) for air in runs), strict=True)
-    over, of_size, none = ("humidity", "share"), {"units": unit}, {"units": "1"}
+    over = ("humidity", "share")
     sizes, errors = zip(*runs.values(), strict=True)
-    found = {name: sizes, f"{name}_error": errors}
-    found |= dict(zip(("estimate", "low", "high"), np.moveaxis(np.array(estimates), 2, 0), strict=True))
+    columns = {name: sizes, f"{name}_error": errors}
+    columns |= dict(zip(("estimate", "low", "high"), np.moveaxis(np.array(estimates), 2, 0), strict=True))
     dataset = xr.Dataset(
-        {name: (over, np.array(values), of_size) for name, values in found.items()}
-        | {"refused": ("humidity", list(refused))},
-        {"humidity": ("humidity", list(runs), none), "share": ("share", shares, none)},
+        {name: (over, np.array(values)) for name, values in columns.items()} | {"refused": ("humidity", list(refused))},
+        {"humidity": ("humidity", list(runs)), "share": ("share", shares)},
     )
     return dataset.assign(_inputs_of(settings.asked) if settings.asked else {})
 
@@ -178,10 +188,8 @@ def estimated(plan: Any, stage: str) -> list[str]:
 
 
 def stage_of(plan: Any, device: str) -> str | None:
-    """Stage of the estimate of a device, none of a kind that the estimate does not know, and in dry air alone."""
+    """Stage of the estimate of a device, none of a kind that the estimate does not know."""
     kind = plan.devices.kind(device)
-    if not humid(plan.devices.sections[device]["humidities"]):
-        return None
     if kind.has_tip:
         return LENGTHS
     return FORCES if kind.is_patch else None
@@ -198,28 +206,31 @@ LENGTHS, FORCES = "device_estimate", "stopper_estimate"
 _FOLDERS = {LENGTHS: "devices/estimate", FORCES: "devices/estimate_of_force"}
 
 
-def _settings(of):
+def _settings(kind_of_numbers):
     """Settings of a stage by the class of its numbers: these of a device, or why the estimate refuses it."""
 
     def settings(plan, at):
         """Settings of a device."""
         section = plan.config["devices"][at.device]
-        question = question_of(plan.config, at.device, section | {"humidities": humid(section["humidities"])})
+        question = question_of(plan.config, at.device, section)
         if isinstance(question, NotLearnt):
             return {"refused": str(question)}
         pair, surfaces = plan.config["pairs"][section["pair"]], plan.config["surfaces"]
-        return {"asked": select(of, section | {side: surfaces[pair[side]] for side in SIDES})}
+        sides = {side: surfaces[pair[side]] for side in SIDES}
+        has_material = any("material" in side for side in sides.values())
+        own = {"hamaker_constant_zJ": round(from_si(question.constant, "zJ"), 9)} if has_material else {}
+        return {"asked": select(kind_of_numbers, section | sides | own)}
 
     return settings
 
 
-def _stage(name, of, kind, result, compute):
+def _stage(name, kind_of_numbers, kind, result, compute):
     """Stage of the estimates of some devices beside a result of their runs."""
     return Stage.writing(
         name,
         f"{_FOLDERS[name]}/{{device}}",
         inputs=lambda plan, at: results_of(plan, at.device, result) | {"table": File(FILE)},
-        settings=_settings(of),
+        settings=_settings(kind_of_numbers),
         kind=kind,
         compute=compute,
         message="Estimate at once of {device} beside its run.",

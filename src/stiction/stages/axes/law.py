@@ -80,17 +80,16 @@ def layout(law: Law, measured: np.ndarray, errors: np.ndarray, settings: Setting
     """Dataset of a law, with the scaled quantities of its settings (n, q) and the covariance of their errors."""
     over, other = ("quantity", "coefficient"), ("other_quantity", "other_coefficient")
     trial = "degree", "tried_scatter"
-    scale = {"long_name": "ln rms [m], skewness, ln(kurtosis - 1 - skewness²), ln corner [rad/m], ln(-slope)"}
     return xr.Dataset(
         {
-            "measured": (("setting", "quantity"), measured, scale),
-            "errors": (("setting", "quantity", "other_quantity"), errors, {"long_name": "covariance of measured"}),
-            "coefficients": (over, law.coefficients, {"long_name": "of Legendre polynomials over the settings"}),
-            "covariance": ((*over, *other), law.covariance, {"long_name": "of the coefficients"}),
-            "degrees": ("quantity", law.degrees, {"long_name": "degree that predicts left-out settings best"}),
-            "scatter": ("quantity", law.scatter, {"long_name": "of the settings, beyond their errors"}),
-            "surprise": (("setting", "quantity"), law.surprise, {"long_name": "from the law of the others [errors]"}),
-            "likely": (("quantity", *trial), law.parts.likely, {"long_name": "of each degree and scatter"}),
+            "measured": (("setting", "quantity"), measured),
+            "errors": (("setting", "quantity", "other_quantity"), errors),
+            "coefficients": (over, law.coefficients),
+            "covariance": ((*over, *other), law.covariance),
+            "degrees": ("quantity", law.degrees),
+            "scatter": ("quantity", law.scatter),
+            "surprise": (("setting", "quantity"), law.surprise),
+            "likely": (("quantity", *trial), law.parts.likely),
             "part_coefficients": (("quantity", *trial, "coefficient"), law.parts.coefficients),
             "part_weights": (("quantity", *trial, "coefficient", "setting"), law.parts.weights),
             "flags": ((), "\n".join(sentences(law, settings))),
@@ -222,12 +221,7 @@ def _numbers(entry, quantities):
     places_in_errors = [errors.quantities.index(name) for name in quantities]
     covariance[np.ix_(places, places)] = errors.covariance[np.ix_(places_in_errors, places_in_errors)]
     rounded = [[_rounded(number) for number in row] for row in covariance]
-    return {"values": [_exactly(number) for number in values], "covariance": rounded}
-
-
-def _exactly(value):
-    """Number of Python with digits enough for those of a stated setting."""
-    return float(f"{value:.14g}")
+    return {"values": [float(f"{number:.14g}") for number in values], "covariance": rounded}
 
 
 def in_order(plan: Any, name: str) -> list[str]:

@@ -73,7 +73,7 @@ def _slopes(points, curve, over):
     for number, (places, dimension) in enumerate(zip(axes, over, strict=True)):
         slopes = np.apply_along_axis(_between, number, slopes, places, curve[dimension].values)
     dims = (*over, "humidity", "shape", "law_quantity")
-    return dims, slopes, {"long_name": "of the margin by scaled quantities"}
+    return dims, slopes
 
 
 def _between(values, places, others):

@@ -102,9 +102,9 @@ def layout(advice: Recommendation) -> xr.Dataset:
         advice.after,
     )
     common = {
-        "margin": (over, advice.margin, {"long_name": "smallest margin"}),
-        "safe": (over, advice.safe, {"long_name": "margin of the next run with 95 % confidence"}),
-        "safe_mean": (over, advice.safe_mean, {"long_name": "margin of the mean process with 95 % confidence"}),
+        "margin": (over, advice.margin),
+        "safe": (over, advice.safe),
+        "safe_mean": (over, advice.safe_mean),
     } | {
         name: ((*each, "end") if name == "best_interval" else each, values if are_pairs else values[0])
         for name, values in zip(_NUMBERS, numbers, strict=True)
@@ -117,8 +117,8 @@ def _along_one(advice):
     """Variables of the settings of one process."""
     places = np.reshape([(crossing.coordinate, crossing.error) for crossing in advice.crossings], (-1, 2))
     return {
-        "value": ("place", *advice.axes, {"long_name": "of the variable"}),
-        "band": (("end", "place"), advice.band, {"long_name": "95 % band of the margin of the mean process"}),
+        "value": ("place", *advice.axes),
+        "band": (("end", "place"), advice.band),
         "crossing": ("crossings", places[:, 0]),
         "crossing_error": ("crossings", places[:, 1]),
         "next_subject": ((), advice.subject),
@@ -129,8 +129,8 @@ def _along_one(advice):
 def _ranges(of_run, of_mean):
     """Variables of the ranges that suffice for the next run and for the mean process."""
     return {
-        "sufficient": (("range", "end"), np.reshape(of_run, (-1, 2)), {"long_name": "next run"}),
-        "sufficient_mean": (("mean_range", "end"), np.reshape(of_mean, (-1, 2)), {"long_name": "mean process"}),
+        "sufficient": (("range", "end"), np.reshape(of_run, (-1, 2))),
+        "sufficient_mean": (("mean_range", "end"), np.reshape(of_mean, (-1, 2))),
     }
 
 

@@ -170,10 +170,10 @@ def layout(
     return xr.Dataset(
         {name: (over, columns[name], note) for name in ("safe", "estimate", "error", "bound")}
         | {
-            "stuck": ((*over, "end"), columns["stuck"], {"units": "1"}),
+            "stuck": ((*over, "end"), columns["stuck"]),
             "samples": ((), settings.number or samples),
             "required": ((), required, note),
-            "share": ((), settings.share, {"units": "1"}),
+            "share": ((), settings.share),
             "corrected": ("humidity", [settings.water.changes(rh) != (NONE, NONE) for rh in settings.humidities]),
         },
         coords={

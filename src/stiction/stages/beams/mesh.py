@@ -77,16 +77,16 @@ def layout(
     distance, force = curve
     return xr.Dataset(
         {
-            "element_length": ("mesh", elements, {"units": "m"}),
-            "point_distance": ("mesh", points, {"units": "m", "long_name": "l_meso"}),
-            "crack_length": ("mesh", [a.crack_length for a in arrests], {"units": "m"}),
-            "energy": ("mesh", [a.energy for a in arrests], {"units": "J m-2", "long_name": "Eq. (13)"}),
-            "law": ("coefficient", law, {"units": "SI"}),
-            "force": ("distance", force, {"units": "Pa"}),
+            "element_length": ("mesh", elements),
+            "point_distance": ("mesh", points),
+            "crack_length": ("mesh", [a.crack_length for a in arrests]),
+            "energy": ("mesh", [a.energy for a in arrests]),
+            "law": ("coefficient", law),
+            "force": ("distance", force),
         },
         coords={
             "coefficient": ["f_max", "d_max", "a_left", "a_right"],
-            "distance": ("distance", distance, {"units": "m"}),
+            "distance": ("distance", distance),
         },
     )
 

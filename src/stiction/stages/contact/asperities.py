@@ -115,15 +115,15 @@ def layout(
     over = ("spacing", "reading", "strip", "attraction")
     return xr.Dataset(
         {
-            "adhesion_energy": ((*over, "humidity"), energies, {"units": "J m-2"}),
-            "seconds": (over, seconds, {"units": "s", "long_name": "processor time of a strip"}),
+            "adhesion_energy": ((*over, "humidity"), energies),
+            "seconds": (over, seconds),
         },
         coords={
-            "spacing": ("spacing", list(spacings), {"units": "m"}),
+            "spacing": ("spacing", list(spacings)),
             "reading": list(READINGS),
             "strip": np.arange(energies.shape[2], dtype=np.int32),
             "attraction": list(attractions),
-            "humidity": ("humidity", list(humidities), {"units": "1"}),
+            "humidity": ("humidity", list(humidities)),
         },
     )
 

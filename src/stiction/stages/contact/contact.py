@@ -56,13 +56,10 @@ def compute_each(
     datasets = [layout(*curves, rough.distances, samples) for curves, rough in zip(contacts, pairs, strict=True)]
     datasets = [_displaced(*each, streams) for each in zip(datasets, pairs, strict=True)]
     if settings.probe:
-        return [_under_probe(*each) for each in zip(datasets, pairs, strict=True)]
+        # The rms is that of z₁ + z₂, which the bearing area does not show.
+        rms = [((), pair.rms) for pair in pairs]
+        return [each.assign(rms=of_pair) for each, of_pair in zip(datasets, rms, strict=True)]
     return [tip_dataset(*each) for each in zip(datasets, pairs, strict=True)] if settings.tilt else datasets
-
-
-def _under_probe(contact, pair):
-    """Contact with the rms of z₁ + z₂, which its bearing area does not show."""
-    return contact.assign(rms=((), pair.rms, {"units": "m"}))
 
 
 def _displaced(contact, pair, streams):
@@ -70,7 +67,7 @@ def _displaced(contact, pair, streams):
     if not (pair.replica and pair.replica.of_heights.play):
         return contact
     displacements = [pair.replica.displacement(streams(int(k))[0]) for k in contact.strip]
-    return contact.assign(displacement=("strip", displacements, {"units": "m"}))
+    return contact.assign(displacement=("strip", displacements))
 
 
 def from_surfaces(data: Mapping[str, Any], pair: str, settings: Settings) -> xr.Dataset:
@@ -88,22 +85,22 @@ def layout(solid_pressure: np.ndarray, bearing_area: np.ndarray, grid: DistanceG
     over = ("strip", "slope") if np.ndim(solid_pressure) == 3 else ("strip",)
     return xr.Dataset(
         {
-            "solid_pressure": ((*over, "distance"), np.asarray(solid_pressure, np.float32), {"units": "Pa"}),
-            "bearing_area": ((*over, "height"), np.asarray(bearing_area, np.float32), {"units": "1"}),
-            "step": ((), grid.step, {"units": "m"}),
+            "solid_pressure": ((*over, "distance"), np.asarray(solid_pressure, np.float32)),
+            "bearing_area": ((*over, "height"), np.asarray(bearing_area, np.float32)),
+            "step": ((), grid.step),
         },
         coords={
             "strip": np.asarray(samples, np.int32),
-            "distance": ("distance", grid.solid, {"units": "m"}),
-            "height": ("height", grid.bearing, {"units": "m"}),
+            "distance": ("distance", grid.solid),
+            "height": ("height", grid.bearing),
         },
     )
 
 
 def tip_dataset(contact: xr.Dataset, pair: TiltedPair) -> xr.Dataset:
     """Dataset of tips: with their slopes and ends, and the reference length of pressures and areas along the strip."""
-    slopes = ("slope", list(pair.tilt.slopes), {"units": "1"})
-    of_strips = {"length": ((), pair.length, {"units": "m"}), "ends": ("slope", pair.tilt.ends, {"units": "1"})}
+    slopes = ("slope", list(pair.tilt.slopes))
+    of_strips = {"length": ((), pair.length), "ends": ("slope", pair.tilt.ends)}
     return contact.assign(of_strips).assign_coords(slope=slopes)
 
 
@@ -167,7 +164,7 @@ def with_correlations(
     described = [(spectrum_of(spectrum), moments(heights).rms) for heights, spectrum in surfaces]
     reach = max(uncorrelated_beyond(spectrum) for spectrum, _ in described) / sides[0]
     correlations = [] if is_at_most(reach, 1) else mean_height_correlations(described, sides, math.ceil(reach))
-    return contact.assign(correlations=("lag", correlations, {"units": "1"}))
+    return contact.assign(correlations=("lag", correlations))
 
 
 def surface_rms(contact: xr.Dataset) -> float:

@@ -38,18 +38,18 @@ OF_RATIOS, OF_LARGEST = 0.03, 0.1
 MOST = 120
 #: Strips in dry air whose sum over summits is computed, 7 ms each.
 ON_SUMMITS = 500
-#: Variables of a sample at a humidity: unit and meaning.
-VARIABLES = {
-    "adhesion_energy": ("J m-2", "e under full elastic contact"),
-    "pull_off": ("Pa", "f_max under full elastic contact"),
-    "summit_energy": ("J m-2", "e of the sum over summits"),
-    "summit_pull_off": ("Pa", "f_max of the sum over summits"),
-    "contact_share": ("1", "share of the elements in contact, without force"),
-    "onset_share": ("1", "share of them above the pressure at which a summit begins to yield"),
-    "hardness_share": ("1", "share of them above the hardness"),
-    "residual": ("m", "largest gap or overlap of an element in contact"),
-    "states": ("1", "number of distances"),
-}
+#: Variables of a sample at a humidity.
+VARIABLES = (
+    "adhesion_energy",
+    "pull_off",
+    "summit_energy",
+    "summit_pull_off",
+    "contact_share",
+    "onset_share",
+    "hardness_share",
+    "residual",
+    "states",
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -229,17 +229,14 @@ def layout(
 
     Spacing of the elements [m], and energies and largest attractions of more samples on summits (N, n_humidity, 2).
     """
-    columns = {
-        name: (("strip", "humidity"), values[..., i], {"units": unit, "long_name": meaning})
-        for i, (name, (unit, meaning)) in enumerate(VARIABLES.items())
-    }
+    columns = {name: (("strip", "humidity"), values[..., i]) for i, name in enumerate(VARIABLES)}
     if more is not None:
-        columns["more"] = ("more_samples", "humidity", "quantity"), more, {"units": "SI"}
+        columns["more"] = ("more_samples", "humidity", "quantity"), more
     return xr.Dataset(
-        columns | {"spacing": ((), spacing, {"units": "m"})},
+        columns | {"spacing": ((), spacing)},
         coords={
             "strip": np.arange(len(values), dtype=np.int32),
-            "humidity": ("humidity", list(humidities), {"units": "1"}),
+            "humidity": ("humidity", list(humidities)),
         },
     )
 

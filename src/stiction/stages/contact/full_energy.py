@@ -211,8 +211,7 @@ UNKNOWN = Ratio(np.nan, np.nan, np.nan, np.nan, (FINE, SUMMITS), {}, np.nan)
 
 def layout(ratio: Ratio, on_summits: StripQuantities, reason: str = "") -> xr.Dataset:
     """Dataset of the ratio of energies, the means on summits, and why it is not known."""
-    units = {"energy": "J m-2", "pull_off": "Pa"}
-    means = {f"summit_{name}": ((), getattr(on_summits, name), {"units": unit}) for name, unit in units.items()}
+    means = {f"summit_{name}": ((), getattr(on_summits, name)) for name in ("energy", "pull_off")}
     every = [SUMMITS, FINE, *GRIDS]
     return xr.Dataset(_ratio(ratio, ALLOWED) | means, coords={"every": every}, attrs={"reason": reason})
 
@@ -222,7 +221,7 @@ def _ratio(ratio, allowed, prefix=""):
     every = [SUMMITS, FINE, *GRIDS]
     numbers = {name: getattr(ratio, name) for name in ("ratio", "power", "power_error")}
     numbers |= {"ratio_error": ratio.ratio * ratio.error, "largest_residual": ratio.largest}
-    columns = {name: ((), value, {"units": "1"}) for name, value in numbers.items()} | {
+    columns = {name: ((), value) for name, value in numbers.items()} | {
         "strips": ("every", [ratio.strips.get(level, 0) for level in every]),
         "in_chain": ("every", [level in ratio.chain for level in every]),
         "applied": ((), bool(ratio.error <= allowed)),

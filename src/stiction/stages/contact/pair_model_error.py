@@ -165,11 +165,11 @@ def _of_tips_in_water(studies, at):
     over = "humidity", "slope"
     ratios = [_from_driest(each, computed_at, within) for each in means.T]
     return {
-        "tip_ratio": (over, np.transpose(ratios), {"units": "1"}),
-        "tip_error": (over, np.hypot(errors, between).T, {"units": "1"}),
-        "tip_power": ("humidity", np.ones(len(at)), {"units": "1"}),
+        "tip_ratio": (over, np.transpose(ratios)),
+        "tip_error": (over, np.hypot(errors, between).T),
+        "tip_power": ("humidity", np.ones(len(at))),
         "tip_applied": ("humidity", np.full(len(at), True)),
-        "slope": ("slope", studies[0].slope.values, {"units": "1"}),
+        "slope": ("slope", studies[0].slope.values),
     }
 
 
@@ -181,9 +181,9 @@ def _of_tips(tips, humidities):
     ratios = [interpolated(ratio, *humidities) for ratio in ratios_of_tips.means.T]
     over = "humidity", "slope"
     return {
-        "tip_ratio": (over, np.transpose(ratios), {"units": "1"}),
-        "tip_error": (over, np.hypot(errors, between).T, {"units": "1"}),
-        "tip_power": ("humidity", interpolated(ratios_of_tips.powers, *humidities), {"units": "1"}),
+        "tip_ratio": (over, np.transpose(ratios)),
+        "tip_error": (over, np.hypot(errors, between).T),
+        "tip_power": ("humidity", interpolated(ratios_of_tips.powers, *humidities)),
     }
 
 
@@ -203,10 +203,10 @@ def layout(
     columns |= {f"{name}_error": errors for name, (_, errors) in ratios.items()}
     flags = {"interpolated": ~np.isin(at, computed_at), "applied": np.isin(at, applied)}
     return xr.Dataset(
-        {name: ("humidity", values, {"units": "1"}) for name, values in columns.items()}
+        {name: ("humidity", values) for name, values in columns.items()}
         | {name: ("humidity", flags) for name, flags in flags.items()}
         | {"strips": ((), strips)},
-        coords={"humidity": ("humidity", at, {"units": "1"})},
+        coords={"humidity": ("humidity", at)},
     )
 
 

@@ -60,17 +60,17 @@ def layout(
     standard error [-]. At the distance of the mean planes [m], the pressure is the mean of the surfaces without
     attraction [Pa]; the hardness is that of the softer body [Pa].
     """
-    units = {"interference": "m", "radius": "m", "stress": "Pa"}
-    columns = {name: ("summit", np.asarray(summits[name], np.float32), {"units": unit}) for name, unit in units.items()}
+    names = ("interference", "radius", "stress")
+    columns = {name: ("summit", np.asarray(summits[name], np.float32)) for name in names}
     return xr.Dataset(
         columns
         | {
             "strip": ("summit", np.asarray(summits["strip"], np.int32)),
-            "plastic_share": ((), share[0], {"units": "1", "long_name": "A_P / A"}),
-            "plastic_share_error": ((), share[1], {"units": "1"}),
-            "separation": ((), distance, {"units": "m"}),
-            "pressure": ((), pressure, {"units": "Pa", "long_name": "mean pressure of the surfaces"}),
-            "hardness": ((), hardness, {"units": "Pa"}),
+            "plastic_share": ((), share[0]),
+            "plastic_share_error": ((), share[1]),
+            "separation": ((), distance),
+            "pressure": ((), pressure),
+            "hardness": ((), hardness),
         }
     )
 

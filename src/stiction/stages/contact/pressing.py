@@ -15,14 +15,8 @@ from stiction.stages.contact import full_contact
 from stiction.stages.contact.pairs import bodies
 from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
 
-#: Variables of a strip that is pressed: unit and meaning.
-_PRESSED = {
-    "pressure": ("Pa", "mean pressure"),
-    "separation": ("m", "distance between the mean planes"),
-    "contact_share": ("1", "share of the elements in contact"),
-    "hardness_share": ("1", "share of them at the hardness"),
-    "flattening": ("m", "largest flattening of an element"),
-}
+#: Variables of a strip that is pressed.
+_PRESSED = ("pressure", "separation", "contact_share", "hardness_share", "flattening")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -108,15 +102,14 @@ def layout(energies: np.ndarray, presses: np.ndarray, humidities: Sequence[float
     Energies (n, 2 + n_steps, n_humidity) are those of fresh strips, after adhesion alone, and after each press [J m⁻²];
     presses (n, n_steps, n_variables) are in the order of the variables of this module [SI].
     """
-    units = {"units": "J m-2"}
     columns = {
-        "fresh_energy": (("strip", "humidity"), energies[:, 0], units | {"long_name": "e before"}),
-        "adhered_energy": (("strip", "humidity"), energies[:, 1], units | {"long_name": "e after adhesion alone"}),
-        "pressed_energy": (("strip", "step", "humidity"), energies[:, 2:], units | {"long_name": "e after pressing"}),
+        "fresh_energy": (("strip", "humidity"), energies[:, 0]),
+        "adhered_energy": (("strip", "humidity"), energies[:, 1]),
+        "pressed_energy": (("strip", "step", "humidity"), energies[:, 2:]),
     }
-    for i, (name, (unit, meaning)) in enumerate(_PRESSED.items()):
-        columns[name] = (("strip", "step"), presses[..., i], {"units": unit, "long_name": meaning})
-    return xr.Dataset(columns, coords={"humidity": ("humidity", list(humidities), {"units": "1"})})
+    for i, name in enumerate(_PRESSED):
+        columns[name] = (("strip", "step"), presses[..., i])
+    return xr.Dataset(columns, coords={"humidity": ("humidity", list(humidities))})
 
 
 def _settings(plan, at):

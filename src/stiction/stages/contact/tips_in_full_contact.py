@@ -134,12 +134,12 @@ def layout(rows: Sequence, settings: Settings) -> xr.Dataset:
     full, summits = np.moveaxis(np.array(rows, float), -1, 0)
     return xr.Dataset(
         {
-            "force": (over, full, {"units": "N m-1", "long_name": "largest attraction in full elastic contact"}),
-            "summit_force": (over, summits, {"units": "N m-1", "long_name": "largest attraction on summits"}),
+            "force": (over, full),
+            "summit_force": (over, summits),
         },
         coords={
-            "slope": ("slope", list(settings.tilt.slopes), {"units": "1"}),
-            "humidity": ("humidity", list(settings.humidities), {"units": "1"}),
+            "slope": ("slope", list(settings.tilt.slopes)),
+            "humidity": ("humidity", list(settings.humidities)),
         },
     )
 
@@ -155,7 +155,7 @@ def compute_for_devices(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair:
 def _of_more(rows, more):
     """Forces on summits of all strips (N, slopes, humidities), if there are more than those in full contact."""
     forces = [*np.array(rows)[..., 1], *more]
-    return {"more": (("more_samples", "slope", "humidity"), forces, {"units": "N m-1"})} if more else {}
+    return {"more": (("more_samples", "slope", "humidity"), forces)} if more else {}
 
 
 def models_of_devices(study: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:

@@ -211,9 +211,9 @@ def with_members(
         shift(state, members[name], settings) if name in members else (0.0, 0.0) for name in progress(names, "members")
     ]
     (shifts, errors), (surfaces, labels) = np.transpose(effects), np.transpose(names)
-    return budget.assign(
-        member_shift=("member", shifts, {"units": "1"}), member_error=("member", errors, {"units": "1"})
-    ).assign_coords(member=labels, member_of=("member", surfaces))
+    return budget.assign(member_shift=("member", shifts), member_error=("member", errors)).assign_coords(
+        member=labels, member_of=("member", surfaces)
+    )
 
 
 def shift(state: InputState, member: xr.Dataset, settings: AnyBudget) -> tuple[float, float]:
@@ -394,9 +394,9 @@ def layout(
             "covariance": (("input", "other"), covariance),
             "group": ("input", groups),
             "centre": ((), centre if np.isfinite(centre) else np.nan, response),
-            "scatter": ((), finite.std(ddof=1) / finite.mean() if len(finite) > 1 else np.nan, {"units": "1"}),
-            "effect": ("choice", changes[:, 0], {"units": "1"}),
-            "effect_error": ("choice", changes[:, 1], {"units": "1"}),
+            "scatter": ((), finite.std(ddof=1) / finite.mean() if len(finite) > 1 else np.nan),
+            "effect": ("choice", changes[:, 0]),
+            "effect_error": ("choice", changes[:, 1]),
         },
         coords={
             "input": names,

@@ -216,23 +216,22 @@ def layout(filled: Filled, rms: float, longest_strips: Sequence[float], settings
     shapes, shares = list(settings.device.opening.shapes), len(settings.shares)
     lengths = filled.lengths.reshape(*grid, len(shapes), -1)
     limits = [sticking.flooded_lengths(device, *settings.flats) for device in _beams_of_chart(settings)]
-    metres, none = {"units": "m"}, {"units": "1"}
     return xr.Dataset(
         {
-            "safe_length": ((*size, "shape", "share"), risk.in_order(lengths[..., :shares], settings.shares), metres),
-            "quantile": ((*size, "shape", "score"), lengths[..., shares:], metres),
-            "beams": ((), settings.beams, {"long_name": "number of simulated devices of each size"}),
-            "flooded_length": ((*size, "shape"), np.reshape(limits, (*grid, -1)), metres),
-            "longest_strip": (size, np.reshape(longest_strips, grid), metres),
-            "by_elements": (size, filled.by_elements.reshape(grid).astype(np.int8), none),
-            "power_law_error": ((), filled.error, none),
-            "film": ((), settings.water.film(settings.humidity)[0], metres),
-            "rms": ((), rms, metres),
-            "humidity": ((), settings.humidity, none),
+            "safe_length": ((*size, "shape", "share"), risk.in_order(lengths[..., :shares], settings.shares)),
+            "quantile": ((*size, "shape", "score"), lengths[..., shares:]),
+            "beams": ((), settings.beams),
+            "flooded_length": ((*size, "shape"), np.reshape(limits, (*grid, -1))),
+            "longest_strip": (size, np.reshape(longest_strips, grid)),
+            "by_elements": (size, filled.by_elements.reshape(grid).astype(np.int8)),
+            "power_law_error": ((), filled.error),
+            "film": ((), settings.water.film(settings.humidity)[0]),
+            "rms": ((), rms),
+            "humidity": ((), settings.humidity),
         },
         coords={
-            "thickness": ("thickness", list(settings.thicknesses), metres),
-            "gap": ("gap", list(settings.gaps), metres),
+            "thickness": ("thickness", list(settings.thicknesses)),
+            "gap": ("gap", list(settings.gaps)),
             "shape": shapes,
             "share": list(settings.shares),
             "score": risk.SCORES,

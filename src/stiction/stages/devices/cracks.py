@@ -62,8 +62,8 @@ def compute(ground: xr.Dataset, settings: Settings, of_sizes: xr.Dataset | None 
     dataset = layout(beams, ground_of(device, below.laws)[0], below.laws, float(ground.rms))
     dataset = dataset.assign(_in_register(below, settings))
     return dataset.assign(
-        longest_strip=((), device.opening.longest_strip(device, below.laws), {"units": "m"}),
-        size_error=((), laws.error if by_laws else 0.0, {"units": "1", "long_name": "error of power laws of the size"}),
+        longest_strip=((), device.opening.longest_strip(device, below.laws)),
+        size_error=((), laws.error if by_laws else 0.0),
         **ground[["share_flat", "resampled", "repetition"]],
     )
 
@@ -75,7 +75,7 @@ def _in_register(below, settings):
         return {}
     draw = in_register(laws.sampled, laws.displacements)
     arrested = arrests(device, ground_of(device, below.laws), draw, settings.beams, addresses(settings))
-    return {"register_length": ("device", arrested, {"units": "m"})}
+    return {"register_length": ("device", arrested)}
 
 
 def compute_sizes(ground: xr.Dataset, settings: OfSizes) -> xr.Dataset:
@@ -85,7 +85,7 @@ def compute_sizes(ground: xr.Dataset, settings: OfSizes) -> xr.Dataset:
     devices = [replace(settings.device, thickness=thickness, gap=gap) for thickness, gap in product(*axes)]
     laws = fitted(*axes, [release_beams(device, below, settings).arrested for device in devices])
     powers = xr.Dataset({"powers": (("of", "device"), laws.powers)})
-    return powers.assign({name: ((), getattr(laws, name), {"units": "1"}) for name in ("error", "excess")})
+    return powers.assign({name: ((), getattr(laws, name)) for name in ("error", "excess")})
 
 
 def layout(beams: Released, beam: Beam, laws: np.ndarray, rms: float) -> xr.Dataset:
@@ -94,7 +94,7 @@ def layout(beams: Released, beam: Beam, laws: np.ndarray, rms: float) -> xr.Data
     Released beams, the part of the device that finite elements resolve, a sample (k, 4) of its force laws [SI], and rms
     of the sum of both surfaces [m].
     """
-    opening, metres = beams.device.opening, {"units": "m"}
+    opening = beams.device.opening
     lengths = {
         "foundation_length": beams.foundation,
         "beam_length": beam.length,
@@ -103,13 +103,13 @@ def layout(beams: Released, beam: Beam, laws: np.ndarray, rms: float) -> xr.Data
     }
     return xr.Dataset(
         {
-            opening.length: ("device", beams.arrested, metres | {"long_name": opening.words}),
-            "uniform_length": ((), beams.surfaces.length, metres | {"long_name": "length on ground without scatter"}),
-            "surfaces_covariance": (("of", "with"), beams.surfaces.covariance, {"units": "1"}),
-            "reach": ((), beams.reach, metres | {"long_name": "longest simulated length, if not all devices stick"}),
-            "mean_energy": ((), float(forcelaw.energy(laws).mean()), {"units": "J m-2"}),
+            opening.length: ("device", beams.arrested),
+            "uniform_length": ((), beams.surfaces.length),
+            "surfaces_covariance": (("of", "with"), beams.surfaces.covariance),
+            "reach": ((), beams.reach),
+            "mean_energy": ((), float(forcelaw.energy(laws).mean())),
         }
-        | {name: ((), value, metres) for name, value in lengths.items()},
+        | {name: ((), value) for name, value in lengths.items()},
         coords={"of": ["mean", "scatter"], "with": ["mean", "scatter"]},
     )
 

@@ -87,10 +87,9 @@ def _of_tips(changes):
     if "tip_ratio" not in changes:
         return {}
     ends = changes.tip_ratio.where(changes.tip_applied)
-    unit = {"units": "1"}
     return {
-        "least_of_tips": ends.min("slope").assign_attrs(unit),
-        "largest_of_tips": ends.max("slope").assign_attrs(unit),
+        "least_of_tips": ends.min("slope"),
+        "largest_of_tips": ends.max("slope"),
         "tips_applied": changes.tip_applied,
     }
 
@@ -139,14 +138,14 @@ def layout(
     names = ("shape", "humidity")
     return xr.Dataset(
         {
-            "factor": (names, values, {"units": "1"}),
-            "factor_error": (names, errors, {"units": "1"}),
+            "factor": (names, values),
+            "factor_error": (names, errors),
             "interpolated": ("humidity", ~np.isin(settings.airs, computed_at)),
             "applied": ("humidity", np.isin(settings.humidities, settings.applied)),
             "by_levels": ("humidity", settings.is_by_levels),
             "across_gaps": ((), settings.across_gaps),
         },
-        coords={"shape": list(shapes), "humidity": ("humidity", list(settings.humidities), {"units": "1"})},
+        coords={"shape": list(shapes), "humidity": ("humidity", list(settings.humidities))},
     )
 
 

@@ -46,20 +46,16 @@ def compute(data: Mapping[str, Any], settings: Settings) -> xr.Dataset:
 def layout(laws: Laws, rms: float, share_flat: float) -> xr.Dataset:
     """Dataset of force laws, with the rms of the sum of both surfaces [m] and the share of flat samples [-]."""
     moved = laws.displacements
-    displacements = {} if moved is None else {"displacement": ("sample", moved, {"units": "m"})}
+    displacements = {} if moved is None else {"displacement": ("sample", moved)}
     return xr.Dataset(
         model_variables(laws.model)
         | displacements
         | {
-            "sampled": (("sample", "parameter"), laws.sampled, {"units": "SI"}),
-            "rms": ((), rms, {"units": "m"}),
-            "share_flat": ((), share_flat, {"units": "1"}),
-            "resampled": (
-                (),
-                len(laws.sampled) * laws.is_narrow,
-                {"long_name": "samples that beams draw from, if any"},
-            ),
-            "repetition": ((), laws.repetition, {"long_name": "probability to repeat the law of a neighbour"}),
+            "sampled": (("sample", "parameter"), laws.sampled),
+            "rms": ((), rms),
+            "share_flat": ((), share_flat),
+            "resampled": ((), len(laws.sampled) * laws.is_narrow),
+            "repetition": ((), laws.repetition),
         }
         | {f"change_{name}": ((), value) for name, value in laws.change._asdict().items() if laws.change != NONE},
         coords={"parameter": ["f_max", "d_max", "a_left", "a_right"]},

@@ -33,7 +33,7 @@ def compute(contacts: Sequence[xr.Dataset], budgets: Sequence[AnyBudget], waters
     columns = np.reshape(changes, (-1, 2)).T
     responses = [budget.response for budget in budgets]
     return xr.Dataset(
-        {name: ("case", column, {"units": "1"}) for name, column in zip(("change", "error"), columns, strict=True)},
+        {name: ("case", column) for name, column in zip(("change", "error"), columns, strict=True)},
         coords={"humidity": ("case", [budget.humidity for budget in budgets]), "response": ("case", responses)},
     )
 

@@ -186,7 +186,6 @@ class Opening:
     sizes: tuple[str, ...]  #: fields of `DesignedBeam` that a measurement may determine
     shapes: tuple[str, ...]  #: end states in which beams may stick
     length: str  #: name in datasets of the length at which a beam is arrested
-    words: str  #: what this length is
     resolved: Callable[[DesignedBeam, np.ndarray], tuple[Beam, int]]  #: as `long_beam`
     longest_strip: Callable[[DesignedBeam, np.ndarray], float]  #: that it resolves on force laws (n, 4) [m]
     arrests: Callable[..., np.ndarray]  #: as ``held_lengths``
@@ -214,7 +213,6 @@ BEAMS = {
         sizes=("thickness", "gap", "width"),
         shapes=(S_SHAPE, EITHER),
         length="crack_length",
-        words="infinite if not S-shaped",
         resolved=long_beam,
         longest_strip=lambda device, laws: longest(_long_beam(device, laws)[0], laws)[0],
         arrests=_crack_lengths,
@@ -232,7 +230,6 @@ BEAMS = {
         sizes=("thickness", "gap", "width", "residual_stress"),
         shapes=(MIDDLE,),
         length="held_length",
-        words="of the shortest bridge that its middle holds",
         resolved=lambda device, laws: middle_zone(device.beam, device.strip, laws),
         longest_strip=lambda device, laws: longest_strip(device.beam, laws),
         arrests=held_lengths,

@@ -88,12 +88,7 @@ def intervals(dataset: xr.Dataset, discrepancy: Discrepancy, coordinate: float) 
     )
     mask, widths = is_known.values, np.full(dataset.estimate.shape, np.nan)
     widths[mask] = discrepancy.half_widths(np.full(mask.sum(), coordinate), errors.values[mask], COVERAGE)
-    about = "of the 95 % prediction interval, with the form of the model as an error"
     return {
-        f"prediction_{end}": (
-            ("shape", "share"),
-            dataset.estimate.values * np.exp(sign * widths),
-            {"units": "m", "long_name": f"{end} end {about}"},
-        )
+        f"prediction_{end}": (("shape", "share"), dataset.estimate.values * np.exp(sign * widths))
         for end, sign in (("low", -1), ("high", 1))
     }

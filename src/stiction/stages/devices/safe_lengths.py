@@ -60,17 +60,13 @@ def _in_register(beams, cracks):
     if "register_length" not in cracks:
         return {}
     along = next(iter(replace(beams, arrested=cracks.register_length.values).lengths.values()))
-    return {"register_sticking_length": ("device", np.sort(along), {"units": "m"})}
+    return {"register_sticking_length": ("device", np.sort(along))}
 
 
 def _thresholds(sticking, without_samples):
     """Variables of the sticking lengths of all devices, and of lengths that no surfaces hold, by shape."""
-    metres = {"units": "m"}
     ordered, floors = np.sort(list(sticking.values())), [bounds.safe for bounds in without_samples.values()]
-    return {
-        "sticking_length": (("shape", "device"), ordered, metres | {"long_name": "sticking lengths, increasing"}),
-        "floor": ("shape", floors, metres | {"long_name": "length up to which no surfaces hold a device"}),
-    }
+    return {"sticking_length": (("shape", "device"), ordered), "floor": ("shape", floors)}
 
 
 def no_longer_than_in_drier_air(dataset: xr.Dataset, drier: xr.Dataset | None) -> xr.Dataset:
@@ -101,7 +97,7 @@ def compute_at_voltage(
     means = without.mean(axis=0), at.mean(axis=0)
     moved = stage_cracks.with_lengths(cracks, lambda lengths: device.opening.at_voltage(lengths, *means, device.beam))
     added, error = mean_with_error(at[:, 0] - without[:, 0])
-    energies = {"voltage_energy": ((), added, {"units": "J m-2"}), "voltage_error": ((), error, {"units": "J m-2"})}
+    energies = {"voltage_energy": ((), added), "voltage_error": ((), error)}
     return compute(moved, settings, tips).assign(energies)
 
 
@@ -116,11 +112,11 @@ def at_length(beams: Released, length: float) -> dict[str, tuple]:
         """Fractions of devices stuck by shape (shapes,) [-]."""
         return np.array([np.mean(values < length) for values in beams.moved(move).lengths.values()])
 
-    error, none = beams.surfaces.error(stuck), {"units": "1"}
+    error = beams.surfaces.error(stuck)
     return {
-        "length_of_device": ((), length, {"units": "m"}),
-        "stuck_at_length": (("shape", "end"), np.array(shares)[..., 0], none),
-        "stuck_surfaces_error": ("shape", np.where(error > 0, error, np.nan), none),
+        "length_of_device": ((), length),
+        "stuck_at_length": (("shape", "end"), np.array(shares)[..., 0]),
+        "stuck_surfaces_error": ("shape", np.where(error > 0, error, np.nan)),
         "end": ["estimate", "low", "high"],
     }
 
@@ -139,36 +135,35 @@ def layout(
     axis = _axis(sticking, reach)
     stuck = np.array([risk.stuck_share(axis, values) for values in sticking.values()])
     shortest = [np.min(values, where=values <= reach, initial=np.inf) for values in sticking.values()]
-    metres, none_sticks = {"units": "m"}, "shortest length that sticks; infinite if none does"
     film, flat = settings.water.film(settings.humidity)[0], [bounds.flat for bounds in without_samples.values()]
     most, number = [risk.most_stuck(values, reach) for values in sticking.values()], len(next(iter(sticking.values())))
     return xr.Dataset(
         {
-            "stuck": (("shape", "length"), stuck[:, 0], {"units": "1"}),
-            "stuck_band": (("shape", "bound", "length"), stuck[:, 1:], {"units": "1"}),
-            "flooded_length": ("shape", flat, metres | {"long_name": "bound by flooded flats"}),
-            "shortest": ("shape", shortest, metres | {"long_name": none_sticks}),
-            "most_stuck": ("shape", most, {"units": "1", "long_name": "95 % bound of P(stuck) at the reach"}),
-            "reach": ((), reach, metres | {"long_name": "longest simulated length, if not all of them stick"}),
-            "beams": ((), number, {"long_name": "number of simulated devices"}),
-            "film": ((), film, metres),
+            "stuck": (("shape", "length"), stuck[:, 0]),
+            "stuck_band": (("shape", "bound", "length"), stuck[:, 1:]),
+            "flooded_length": ("shape", flat),
+            "shortest": ("shape", shortest),
+            "most_stuck": ("shape", most),
+            "reach": ((), reach),
+            "beams": ((), number),
+            "film": ((), film),
         }
         | _of_shares(safe.values()),
         coords={
             "shape": list(sticking),
             "share": list(settings.shares),
             "bound": ["lower", "upper"],
-            "length": ("length", axis, metres),
+            "length": ("length", axis),
         },
     )
 
 
-#: Variables of safe lengths: field, and what it is.
+#: Fields of the variables of safe lengths.
 _LENGTHS = {
-    "safe_length": ("length", "one-sided 95 % bound of estimate"),
-    "estimate": ("estimate", "length with P(stuck) = share"),
-    "beams_error": ("error", "standard error, number of beams"),
-    "surfaces_error": ("surfaces_error", "standard error, number of sampled surfaces"),
+    "safe_length": "length",
+    "estimate": "estimate",
+    "beams_error": "error",
+    "surfaces_error": "surfaces_error",
 }
 
 
@@ -180,7 +175,7 @@ def _of_shares(safe):
         return ("shape", "share"), [[getattr(length, field) for length in row] for row in safe]
 
     over, bases = column("basis")
-    lengths = {name: (*column(field), {"units": "m", "long_name": text}) for name, (field, text) in _LENGTHS.items()}
+    lengths = {name: column(field) for name, field in _LENGTHS.items()}
     return {"basis": (over, [list(map(str, row)) for row in bases])} | lengths
 
 

@@ -73,7 +73,7 @@ def compute(contact: xr.Dataset, settings: Settings, dry: xr.Dataset | None = No
     of_device = np.array([at[h] for h in settings.humidities])
     along = np.array([at[float(h)] for h in axis])
     flat = max(share_flat(ground, h, settings.water.at(h)) for h, ground in contacts.items())
-    of_surfaces = {"share_flat": ((), flat, {"units": "1"}), "rms": ((), surface_rms(contact), {"units": "m"})}
+    of_surfaces = {"share_flat": ((), flat), "rms": ((), surface_rms(contact))}
     return layout(settings, of_device, axis, along).assign(of_surfaces)
 
 
@@ -84,8 +84,7 @@ def compute_at_voltage(contact: xr.Dataset, settings: Settings, dry: xr.Dataset 
         ground, water = Air(humidity).choose(contact, dry), settings.water.at(humidity)
         with on_patch(*settings.contact):
             columns.append(freeing_potentials(ground, humidity, water, settings.restoring_force / area))
-    volts = {"units": "V", "long_name": "difference of potential below which the spring frees a patch"}
-    potentials = (("humidity", "sample"), np.array(columns), volts)
+    potentials = (("humidity", "sample"), np.array(columns))
     return compute(contact, settings, dry).assign(freeing_potential=potentials)
 
 
@@ -131,31 +130,26 @@ def layout_tilted(settings: Tilted, pull_off: np.ndarray, wedges: np.ndarray) ->
     """
     statistics = _statistics(settings, np.append(pull_off, pull_off.max(axis=0, keepdims=True), axis=0))
     largest = statistics[[*_OVER_TILTS]].isel(tilt=-1)
-    of_tilts = statistics.isel(tilt=slice(-1)).assign_coords(
-        tilt=("tilt", np.arctan(settings.slopes), {"units": "rad"})
-    )
-    long_name = "slope beyond which the force is that of a wedge"
+    of_tilts = statistics.isel(tilt=slice(-1)).assign_coords(tilt=("tilt", np.arctan(settings.slopes)))
     return of_tilts.assign(
         {f"largest_{name}": values for name, values in largest.items()}
-        | {"pull_off": (("tilt", "humidity", "sample"), pull_off, {"units": "N"})}
-        | {"wedge": ("humidity", wedges, {"units": "1", "long_name": long_name})}
+        | {"pull_off": (("tilt", "humidity", "sample"), pull_off)}
+        | {"wedge": ("humidity", wedges)}
     )
 
 
 def _statistics(settings, pull_off):
     """Mean forces, P(stuck) and safe forces of rows of patches (rows, n_rh, m) [N]."""
-    newton, over = {"units": "N"}, ("tilt", "humidity")
-    changes = _changes(settings, settings.humidities)
+    over, changes = ("tilt", "humidity"), _changes(settings, settings.humidities)
     stuck = [_stuck(rows, settings, changes) for rows in pull_off]
     safe, bases = zip(*(_safe(rows, settings.seed, changes) for rows in pull_off), strict=True)
     mean, error = mean_with_error(np.moveaxis(pull_off, -1, 0))
-    of_stuck = {"units": "1", "long_name": "P(stuck) and its 95 % band"}
     return xr.Dataset(
         {
-            "mean": (over, mean, newton),
-            "mean_error": (over, np.hypot(error, mean * _ratio_errors(changes)), newton),
-            "stuck": (("bound", *over), np.moveaxis(stuck, 1, 0), of_stuck),
-            "safe_force": (("part", *over, "share"), np.moveaxis(safe, 0, 1), newton),
+            "mean": (over, mean),
+            "mean_error": (over, np.hypot(error, mean * _ratio_errors(changes))),
+            "stuck": (("bound", *over), np.moveaxis(stuck, 1, 0)),
+            "safe_force": (("part", *over, "share"), np.moveaxis(safe, 0, 1)),
             "basis": ("share", bases[0]),
         },
         coords={"humidity": list(settings.humidities)} | _COORDS,
@@ -181,7 +175,7 @@ def compute_dimples(contact: xr.Dataset, settings: DimpleForces) -> xr.Dataset:
     shape = -1, len(settings.at), settings.number
     used_patches = len(forces) // (shape[1] * shape[2]) * shape[1] * shape[2]
     row_forces = forces[:used_patches].reshape(shape).sum(axis=2)
-    return xr.Dataset({"pull_off": (("beam", "row"), row_forces, {"units": "N"})})
+    return xr.Dataset({"pull_off": (("beam", "row"), row_forces)})
 
 
 def axis_of(settings: Settings) -> np.ndarray:
@@ -219,23 +213,18 @@ def layout(settings: Settings, of_device: np.ndarray, axis: np.ndarray, along: n
     Forces at the humidities of the device (n_rh, m), and along (n, m) a fine axis of humidities, which dry air may
     precede (n,) [N], [-].
     """
-    newton, none, changes = {"units": "N"}, {"units": "1"}, _changes(settings, settings.humidities)
+    changes = _changes(settings, settings.humidities)
     safe, basis = _safe(of_device, settings.seed, changes)
-    of_force, of_band = (
-        none | {"long_name": "relative, of mean forces"},
-        none | {"long_name": "P(stuck) and its 95 % band"},
-    )
-    of_power = none | {"long_name": "relative, of the power of forces"}
     at = {"humidity": list(settings.humidities), "axis": axis, "share": _COORDS["share"]}
     return xr.Dataset(
         {
-            "pull_off": (("humidity", "sample"), of_device, newton),
-            "full_contact_error": ("humidity", _ratio_errors(changes), of_force),
-            "full_contact_power_error": ("humidity", [one.power_error / one.power for one in changes], of_power),
-            "stuck": (("bound", "humidity"), _stuck(of_device, settings, changes), of_band),
-            "safe_force": (("part", "humidity", "share"), safe, newton),
+            "pull_off": (("humidity", "sample"), of_device),
+            "full_contact_error": ("humidity", _ratio_errors(changes)),
+            "full_contact_power_error": ("humidity", [each.power_error / each.power for each in changes]),
+            "stuck": (("bound", "humidity"), _stuck(of_device, settings, changes)),
+            "safe_force": (("part", "humidity", "share"), safe),
             "basis": ("share", basis),
-            "restoring_force": ((), settings.restoring_force, newton),
+            "restoring_force": ((), settings.restoring_force),
         }
         | _along(settings, axis, along),
         coords=at | {"probability": PROBABILITIES, "score": SCORES} | _COORDS,
@@ -244,19 +233,19 @@ def layout(settings: Settings, of_device: np.ndarray, axis: np.ndarray, along: n
 
 def _along(settings, axis, along):
     """Variables of the forces (n, m) [N] along the fine axis of humidities (n,) [-]."""
-    newton, none, changes = {"units": "N"}, {"units": "1"}, _changes(settings, axis)
+    changes = _changes(settings, axis)
     worst, worst_error = _worst(axis, along)
     (safe, *_), _ = _safe(along, settings.seed, changes)
     mean, error = mean_with_error(along.T)
     return {
-        "mean_along": ("axis", mean, newton),
-        "mean_along_error": ("axis", np.hypot(error, mean * _ratio_errors(changes)), newton),
-        "quantile_along": (("probability", "axis"), np.quantile(along, PROBABILITIES, axis=1), newton),
-        "stuck_along": (("bound", "axis"), _stuck(along, settings, changes), none),
-        "scored_along": (("axis", "score"), [quantiles(row) for row in along], newton),
-        "safe_force_along": (("axis", "share"), safe, newton),
-        "worst_humidity": ((), worst, none),
-        "worst_humidity_error": ((), worst_error, none),
+        "mean_along": ("axis", mean),
+        "mean_along_error": ("axis", np.hypot(error, mean * _ratio_errors(changes))),
+        "quantile_along": (("probability", "axis"), np.quantile(along, PROBABILITIES, axis=1)),
+        "stuck_along": (("bound", "axis"), _stuck(along, settings, changes)),
+        "scored_along": (("axis", "score"), [quantiles(row) for row in along]),
+        "safe_force_along": (("axis", "share"), safe),
+        "worst_humidity": ((), worst),
+        "worst_humidity_error": ((), worst_error),
     }
 
 

@@ -46,10 +46,10 @@ def layout(model: ChaosModel, report: tuple[np.ndarray, np.ndarray], rejected: f
     return xr.Dataset(
         model_variables(model)
         | {
-            "dimension_error": ("axis", model.dimension_error, {"long_name": "Err_DR if this many axes are kept"}),
+            "dimension_error": ("axis", model.dimension_error),
             "truncation_error": ("eta", model.truncation_error),
-            "rejected": ((), rejected, {"long_name": "share of draws without a force law"}),
-            "statistics": (("source", "statistic", "component"), statistics, {"units": "SI"}),
+            "rejected": ((), rejected),
+            "statistics": (("source", "statistic", "component"), statistics),
             "correlation": (("source", "component", "other"), correlations),
         },
         coords={

@@ -26,16 +26,9 @@ def layout(samples: np.ndarray, errors: tuple[np.ndarray, np.ndarray], total: in
 
     Numbers of these samples (n,), out of ``total``, and errors of the curve and of the adhesion energy, (n,) each [-].
     """
-    names = {"curve_error": "of the curve for d >= d_limit, root mean square", "energy_error": "of the adhesion energy"}
-    columns = zip(names.items(), errors, strict=True)
+    columns = zip(("curve_error", "energy_error"), errors, strict=True)
     return xr.Dataset(
-        {
-            name: ("strip", error, {"units": "1", "long_name": f"relative error {subject}"})
-            for (name, subject), error in columns
-        }
-        | {
-            "without_law": ((), 1 - len(samples) / total, {"units": "1", "long_name": "share of samples without a law"})
-        },
+        {name: ("strip", error) for name, error in columns} | {"without_law": ((), 1 - len(samples) / total)},
         coords={"strip": samples},
     )
 

@@ -36,12 +36,11 @@ def layout(humidity: np.ndarray, probabilities: np.ndarray, energies: np.ndarray
 
     Humidities (n,) [-], probabilities of the stored quantiles (k,) [-], energies of all samples (n, m) [J m⁻²].
     """
-    unit = {"units": "J m-2"}
     return xr.Dataset(
-        {"energy_quantile": (("probability", "humidity"), np.quantile(energies, probabilities, axis=1), unit)},
+        {"energy_quantile": (("probability", "humidity"), np.quantile(energies, probabilities, axis=1))},
         coords={
-            "humidity": ("humidity", humidity, {"units": "1"}),
-            "probability": ("probability", probabilities, {"units": "1"}),
+            "humidity": ("humidity", humidity),
+            "probability": ("probability", probabilities),
         },
     )
 

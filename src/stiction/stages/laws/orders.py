@@ -66,10 +66,10 @@ def layout(
         {
             "density": (("order", "eta", "position"), densities),
             "input_density": (("eta", "position"), input_density),
-            "distance": (("target", "order", "eta"), distances, {"long_name": "Kolmogorov's distance"}),
+            "distance": (("target", "order", "eta"), distances),
             "samples": ((), sizes[0]),
             "draws": ((), sizes[1]),
-            "converged_order": ("eta", list(converged), {"long_name": "0 if not converged"}),
+            "converged_order": ("eta", list(converged)),
         },
         coords={
             "order": np.arange(1, count + 1),

@@ -32,11 +32,11 @@ def layout(energy: np.ndarray, density: Sequence, sizes: Sequence[int], distance
     values, errors = np.transpose(distances)
     return xr.Dataset(
         {
-            "density": (("size", "energy"), density, {"units": "m2 J-1"}),
-            "distance": ("size", values, {"units": "1", "long_name": "Kolmogorov's distance to all samples"}),
-            "distance_error": ("size", errors, {"units": "1"}),
+            "density": (("size", "energy"), density),
+            "distance": ("size", values),
+            "distance_error": ("size", errors),
         },
-        coords={"size": list(sizes), "energy": ("energy", energy, {"units": "J m-2"})},
+        coords={"size": list(sizes), "energy": ("energy", energy)},
     )
 
 

@@ -137,20 +137,15 @@ def layout(
     pair, form = np.linalg.norm(total, axis=0), np.linalg.norm(uncertainty.form, axis=0)
     changes = np.array(list(choices.values())).reshape(len(choices), len(humidities), 2)
     by_scans = np.array([form if name == "heights" else 0 * form for name in choices]).reshape(changes.shape[:2])
-    by_slopes = {"units": "1", "long_name": "standard error of the error by the samples of the slopes"}
     return xr.Dataset(
         {
-            "error": (
-                ("surface", "part", "humidity"),
-                uncertainty.parts,
-                {"units": "1", "long_name": "standard error of ln e"},
-            ),
-            "error_sampling": (("surface", "humidity"), uncertainty.sampling, by_slopes),
-            "pair_error": ("humidity", pair, {"units": "1"}),
-            "pair_error_sampling": ("humidity", np.linalg.norm(total * uncertainty.sampling, axis=0) / pair, by_slopes),
-            "change": (("choice", "humidity"), changes[..., 0], {"units": "1", "long_name": "relative change of e"}),
-            "change_error": (("choice", "humidity"), changes[..., 1], {"units": "1"}),
-            "change_error_scans": (("choice", "humidity"), by_scans, {"units": "1", "long_name": "by the scans"}),
+            "error": (("surface", "part", "humidity"), uncertainty.parts),
+            "error_sampling": (("surface", "humidity"), uncertainty.sampling),
+            "pair_error": ("humidity", pair),
+            "pair_error_sampling": ("humidity", np.linalg.norm(total * uncertainty.sampling, axis=0) / pair),
+            "change": (("choice", "humidity"), changes[..., 0]),
+            "change_error": (("choice", "humidity"), changes[..., 1]),
+            "change_error_scans": (("choice", "humidity"), by_scans),
             "scans": ("surface", list(scans)),
             "scans_needed": (("surface", "humidity"), scans_needed(total, np.array(scans)[:, None], GOAL)),
         },

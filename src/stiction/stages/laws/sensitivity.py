@@ -53,11 +53,11 @@ def layout(
     (slopes, errors), (differences, their_errors) = estimate, sides
     return xr.Dataset(
         {
-            "adhesion_energy": (("moment", "humidity", "strip"), energies, {"units": "J m-2"}),
-            "slope": (("statistic", "humidity"), slopes, {"units": "1", "long_name": "(|x|/y) dy/dx"}),
-            "standard_error": (("statistic", "humidity"), errors, {"units": "1"}),
-            "difference": (("side", "humidity"), differences, {"units": "1", "long_name": "(|x|/y) Δy/Δx"}),
-            "difference_error": (("side", "humidity"), their_errors, {"units": "1"}),
+            "adhesion_energy": (("moment", "humidity", "strip"), energies),
+            "slope": (("statistic", "humidity"), slopes),
+            "standard_error": (("statistic", "humidity"), errors),
+            "difference": (("side", "humidity"), differences),
+            "difference_error": (("side", "humidity"), their_errors),
         },
         coords={"moment": list(at), "humidity": list(humidities), "statistic": list(_STATISTICS), "side": _SIDES},
     )

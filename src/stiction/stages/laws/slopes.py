@@ -45,8 +45,8 @@ def layout(
     """Dataset of the slopes of ln ē and their standard errors, (n_quantities, n_rh) [-]."""
     return xr.Dataset(
         {
-            "slope": (("quantity", "humidity"), slopes, {"units": "1", "long_name": "d ln e / dx"}),
-            "standard_error": (("quantity", "humidity"), errors, {"units": "1"}),
+            "slope": (("quantity", "humidity"), slopes),
+            "standard_error": (("quantity", "humidity"), errors),
         },
         coords={"quantity": list(quantities), "humidity": list(humidities)},
     )

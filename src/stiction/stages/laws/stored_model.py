@@ -16,7 +16,7 @@ def model_variables(model: ChaosModel) -> dict[str, tuple]:
         "mean": ("component", coordinates.mean),
         "variance": ("axis", coordinates.variances),
         "axes": (("component", "axis"), coordinates.axes),
-        "limit": ((), model.f_limit, {"units": "Pa"}),
+        "limit": ((), model.f_limit),
     }
 
 

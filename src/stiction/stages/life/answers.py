@@ -68,13 +68,11 @@ def in_order(answers: Sequence[LifeRow]) -> list[LifeRow]:
 def layout(answers: Sequence[LifeRow], keys: DeviceKeys, length: float = np.nan) -> xr.Dataset:
     """Dataset of the answers about a device; ``length`` is that at which a beam is asked for voltage and shock [m]."""
     columns = dict(zip(LifeRow._fields, zip(*answers, strict=True), strict=True))
-    numbers = {"low": "at least", "high": "at most", "error": "standard uncertainty"}
-    shock = {"shock": ((), keys.shock, {"units": "m s-2"})} if keys.shock else {}
+    shock = {"shock": ((), keys.shock)} if keys.shock else {}
     return xr.Dataset(
-        {name: ("answer", list(columns[name])) for name in _TEXTS[1:]}
-        | {name: ("answer", list(columns[name]), {"long_name": text}) for name, text in numbers.items()}
-        | {"length": ((), length, {"units": "m"}), "touchdowns": ((), keys.touchdowns, {"units": "1"})}
-        | {"potential": ((), keys.potential, {"units": "V"})}
+        {name: ("answer", list(columns[name])) for name in (*_TEXTS[1:], "low", "high", "error")}
+        | {"length": ((), length), "touchdowns": ((), keys.touchdowns)}
+        | {"potential": ((), keys.potential)}
         | shock,
         coords={"answer": list(columns["name"])},
     )

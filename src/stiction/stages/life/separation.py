@@ -54,7 +54,7 @@ def of_stopper(contacts: Mapping[float, xr.Dataset], settings: StopperSettings) 
         np.maximum(curves.fast_pull_offs(contact, at, water), curves.pull_offs(contact, at, water))
         for at, contact in contacts.items()
     ]
-    forces = (("humidity", "sample"), pull_off_force(np.array(largest), area), {"units": "N"})
+    forces = (("humidity", "sample"), pull_off_force(np.array(largest), area))
     return xr.Dataset({"pull_off": forces}, coords={"humidity": list(contacts)})
 
 
@@ -64,15 +64,14 @@ def of_strips(contact: xr.Dataset, settings: FastInAir) -> xr.Dataset:
         statistic(contact, settings.humidity, settings.water) for statistic in (curves.fast_energies, curves.energies)
     )
     factors = _ratio(np.maximum(fast, slow), slow, lambda means: (means[..., 1] / means[..., 0]) ** 0.25)
-    none = {"units": "1", "long_name": "length of fast separation over that of slow separation"}
-    return xr.Dataset(dict(zip(("factor", "factor_error"), (((), factor, none) for factor in factors), strict=True)))
+    return xr.Dataset(dict(zip(("factor", "factor_error"), (((), factor) for factor in factors), strict=True)))
 
 
 def of_tips(contact: xr.Dataset, settings: FastInAir) -> xr.Dataset:
     """Largest attractions P/w of tips over their slopes, in slow and in fast separation."""
     slopes, slow = curves.tip_forces(contact, settings.humidity, settings.water)
     fast = curves.fast_tip_forces(contact, settings.humidity, settings.water)
-    forces = {name: (("tip", "slope"), values, {"units": "N m-1"}) for name, values in (("slow", slow), ("fast", fast))}
+    forces = {name: (("tip", "slope"), values) for name, values in (("slow", slow), ("fast", fast))}
     return xr.Dataset(forces, coords={"slope": slopes})
 
 

@@ -63,22 +63,22 @@ def layout(
     """
     wavenumber, periodogram = fields
     spacing, heights = patch
-    x, y = (("m", np.arange(n) * spacing) for n in heights.shape)
+    x, y = (np.arange(n) * spacing for n in heights.shape)
     return xr.Dataset(
         {
-            "power": (("strip", "order"), strips["power"], {"units": "m^order", "long_name": "mean of z^order"}),
-            "summit_density": ("strip", strips["summit_density"], {"units": "m-2"}),
-            "mean_curvature": ("strip", strips["mean_curvature"], {"units": "m-1"}),
-            "periodogram": (("field", "wavenumber"), periodogram, {"units": "m4"}),
-            "summit_height": ("summit", np.asarray(summits[0], np.float32), {"units": "m"}),
-            "summit_curvature": ("summit", np.asarray(summits[1], np.float32), {"units": "m-1"}),
-            "elevation": (("x", "y"), np.asarray(heights, np.float32), {"units": "m"}),
+            "power": (("strip", "order"), strips["power"]),
+            "summit_density": ("strip", strips["summit_density"]),
+            "mean_curvature": ("strip", strips["mean_curvature"]),
+            "periodogram": (("field", "wavenumber"), periodogram),
+            "summit_height": ("summit", np.asarray(summits[0], np.float32)),
+            "summit_curvature": ("summit", np.asarray(summits[1], np.float32)),
+            "elevation": (("x", "y"), np.asarray(heights, np.float32)),
         },
         coords={
             "order": [1, 2, 3, 4],
-            "wavenumber": ("wavenumber", wavenumber, {"units": "rad m-1"}),
-            "x": ("x", x[1], {"units": x[0]}),
-            "y": ("y", y[1], {"units": y[0]}),
+            "wavenumber": ("wavenumber", wavenumber),
+            "x": ("x", x),
+            "y": ("y", y),
         },
     )
 

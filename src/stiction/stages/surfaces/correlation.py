@@ -25,10 +25,10 @@ def layout(surfaces: Sequence[str], lag: np.ndarray, correlations: Sequence, len
     """Normalised autocorrelation of surfaces (n_s, n) [-] over the distance, and correlation lengths (n_s,) [m]."""
     return xr.Dataset(
         {
-            "autocorrelation": (("surface", "lag"), correlations, {"units": "1"}),
-            "correlation_length": ("surface", lengths, {"units": "m", "long_name": "r_Z < 0.01 m₂ beyond"}),
+            "autocorrelation": (("surface", "lag"), correlations),
+            "correlation_length": ("surface", lengths),
         },
-        coords={"surface": list(surfaces), "lag": ("lag", lag, {"units": "m"})},
+        coords={"surface": list(surfaces), "lag": ("lag", lag)},
     )
 
 

@@ -30,17 +30,8 @@ from stiction.surface.spectrum import CutoffSelfAffine, TabulatedSpectrum
 
 MOMENTS = ("ln_rms", "skewness", "kurtosis")
 PARAMETERS = ("ln_plateau", "ln_corner", "slope")
-_MOMENT, _SUMMITS = {"long_name": "ln of the rms in metres, skewness, kurtosis"}, {"units": "m, m-2"}
-_CHI2, _P = {"units": "1", "long_name": "chi squared"}, {"units": "1", "long_name": "probability of a larger chi²"}
-_WAVE = {"units": "rad m-1"}
-#: Variables of the fields of `stiction.scans.whittle.Reach`, and their attributes.
-_REACH = {
-    "lowest": {"long_name": "smallest wave number of the fit"},
-    "highest": {"long_name": "largest wave number of the fit"},
-    "nyquist": {},
-    "tip": {"long_name": "wave number beyond which the tip rounds the surface"},
-    "end": {"long_name": "wave number beyond which the scans show no roughness"},
-}
+#: Variables of the fields of `stiction.scans.whittle.Reach`.
+_REACH = ("lowest", "highest", "nyquist", "tip", "end")
 
 
 @dataclass(frozen=True)
@@ -80,7 +71,7 @@ def layout(estimate: SurfaceEstimate, notes: Sequence[str] = ()) -> xr.Dataset:
             "quantity": [*MOMENTS, *PARAMETERS[1:]],
             "parameter": list(PARAMETERS),
             "other_parameter": list(PARAMETERS),
-            "score": ("score", SCORES, {"units": "1"}),
+            "score": ("score", SCORES),
             "summit": ["radius", "density"],
             "axis": ["fast", "slow"],
             "mode": list(MODE_QUANTITIES),
@@ -94,24 +85,19 @@ def _moments(estimate):
     inspection, nearest = estimate.inspection, estimate.feasible
     near = (np.nan,) * 3 if nearest is None else (nearest.skewness, nearest.kurtosis, nearest.distance)
     powers = np.array(inspection.in_order([maps.powers for maps in inspection.sizes]))
-    closed_form = "standard errors if the heights have the density of the model"
     return {
-        "moments": ("moment", estimate.moments, _MOMENT),
-        "covariance": (("moment", "other_moment"), estimate.covariance, {"long_name": "of the moments"}),
-        "raw_moments": (
-            "moment",
-            inspection.moments,
-            {"long_name": "of the levelled scans without noise, with their bias"},
-        ),
-        "scan_moments": (("scan", "moment"), moments(powers), {"long_name": "of every scan"}),
-        "closed_form_errors": ("moment", estimate.closed_form_errors, {"long_name": closed_form}),
-        "places": ("quantity", estimate.places, {"long_name": "errors at another place over those at one place"}),
-        "tile_errors": ("moment", estimate.tile_errors, {"long_name": "standard errors from the scatter of tiles"}),
-        "homogeneity_chi2": ("moment", estimate.homogeneity[0], _CHI2),
-        "homogeneity_p": ("moment", estimate.homogeneity[1], _P),
-        "agreement_chi2": ("moment", estimate.agreement[0], _CHI2),
-        "agreement_p": ("moment", estimate.agreement[1], _P),
-        "feasible": ("shape", list(near), {"long_name": "moments of the maximum-entropy density; distance"}),
+        "moments": ("moment", estimate.moments),
+        "covariance": (("moment", "other_moment"), estimate.covariance),
+        "raw_moments": ("moment", inspection.moments),
+        "scan_moments": (("scan", "moment"), moments(powers)),
+        "closed_form_errors": ("moment", estimate.closed_form_errors),
+        "places": ("quantity", estimate.places),
+        "tile_errors": ("moment", estimate.tile_errors),
+        "homogeneity_chi2": ("moment", estimate.homogeneity[0]),
+        "homogeneity_p": ("moment", estimate.homogeneity[1]),
+        "agreement_chi2": ("moment", estimate.agreement[0]),
+        "agreement_p": ("moment", estimate.agreement[1]),
+        "feasible": ("shape", list(near)),
     }
 
 
@@ -120,29 +106,25 @@ def _spectrum(estimate):
     inspection, largest = estimate.inspection, estimate.inspection.largest
     rings, fit = inspection.rings, inspection.fit
     slow = spectra.rings(largest.periodogram, largest.periodogram.near_slow_axis)
-    reach = zip(_REACH.items(), astuple(inspection.reach), strict=True)
+    reach = zip(_REACH, astuple(inspection.reach), strict=True)
     return {
-        "wavenumber": ("ring", rings.wavenumber, _WAVE),
-        "density": (
-            "ring",
-            rings.density,
-            {"units": "m4", "long_name": "without noise; 0 where it hides the spectrum"},
-        ),
-        "modes": ("ring", rings.modes, {"units": "1", "long_name": "independent values of a ring"}),
-        "weight": ("ring", rings.weight, {"units": "1", "long_name": "independent values of a ring among many"}),
-        "slow_wavenumber": ("slow_ring", slow.wavenumber, _WAVE),
-        "slow_density": ("slow_ring", slow.density, {"units": "m4", "long_name": "near the slow axis"}),
-        "plateau": ((), fit.plateau, {"units": "m4"}),
-        "corner": ((), fit.corner, _WAVE),
-        "slope": ((), fit.slope, {"units": "1"}),
-        "fit_covariance": (("parameter", "other_parameter"), estimate.fit_covariance, {"long_name": "of the fit"}),
-        "fit_chi2": ((), fit.chi2, _CHI2),
-        "fit_freedom": ((), fit.freedom, {"long_name": "rings less parameters"}),
-        **{name: ((), value, _WAVE | words) for (name, words), value in reach},
-        "wavelengths": ((), inspection.wavelengths, {"units": "1", "long_name": "of the corner along a scan"}),
-        "areas": ((), inspection.areas, {"units": "1", "long_name": "correlation areas of all scans"}),
-        "sectors": ("sector", estimate.sectors, {"units": "1", "long_name": "spectrum relative to its mean"}),
-        "sector_errors": ("sector", estimate.sector_errors, {"units": "1"}),
+        "wavenumber": ("ring", rings.wavenumber),
+        "density": ("ring", rings.density),
+        "modes": ("ring", rings.modes),
+        "weight": ("ring", rings.weight),
+        "slow_wavenumber": ("slow_ring", slow.wavenumber),
+        "slow_density": ("slow_ring", slow.density),
+        "plateau": ((), fit.plateau),
+        "corner": ((), fit.corner),
+        "slope": ((), fit.slope),
+        "fit_covariance": (("parameter", "other_parameter"), estimate.fit_covariance),
+        "fit_chi2": ((), fit.chi2),
+        "fit_freedom": ((), fit.freedom),
+        **{name: ((), value) for name, value in reach},
+        "wavelengths": ((), inspection.wavelengths),
+        "areas": ((), inspection.areas),
+        "sectors": ("sector", estimate.sectors),
+        "sector_errors": ("sector", estimate.sector_errors),
     }
 
 
@@ -151,27 +133,26 @@ def _heights(estimate):
     largest = estimate.inspection.largest
     density = histogram(largest.levelled, largest.quantiles, estimate.quantiles)
     errors = histogram_errors(estimate.model) / np.sqrt(len(largest.names))
-    first = {"units": "m", "long_name": "first of the largest scans, levelled"}
     return {
-        "quantile": ("score", estimate.quantiles, {"units": "1", "long_name": "standardised height"}),
-        "quantile_error": ("score", estimate.quantile_errors, {"units": "1"}),
-        "goodness_chi2": ((), estimate.goodness[0], _CHI2),
-        "goodness_p": ((), estimate.goodness[1], _P),
-        "histogram": ("bin", density, {"units": "1", "long_name": "density of z / rms"}),
-        "histogram_error": ("bin", errors, {"units": "1"}),
-        "edge": ("edges", EDGES, {"units": "1", "long_name": "edges of the bins of z / rms"}),
-        "mode_covariance": (("mode", "other_mode"), _mode_covariance(estimate), {"long_name": "of ln rms and modes"}),
-        "elevation": (("fast", "slow"), largest.levelled[0].astype(np.float32), first),
+        "quantile": ("score", estimate.quantiles),
+        "quantile_error": ("score", estimate.quantile_errors),
+        "goodness_chi2": ((), estimate.goodness[0]),
+        "goodness_p": ((), estimate.goodness[1]),
+        "histogram": ("bin", density),
+        "histogram_error": ("bin", errors),
+        "edge": ("edges", EDGES),
+        "mode_covariance": (("mode", "other_mode"), _mode_covariance(estimate)),
+        "elevation": (("fast", "slow"), largest.levelled[0].astype(np.float32)),
     }
 
 
 def _summits(estimate):
     """Variables of the summits of the scans and of the model."""
     return {
-        "summits": ("summit", estimate.summits, _SUMMITS),
-        "summit_errors": ("summit", estimate.summit_errors, _SUMMITS),
-        "model_summits": ("summit", estimate.model_summits, _SUMMITS),
-        "model_summit_errors": ("summit", estimate.model_summit_errors, _SUMMITS),
+        "summits": ("summit", estimate.summits),
+        "summit_errors": ("summit", estimate.summit_errors),
+        "model_summits": ("summit", estimate.model_summits),
+        "model_summit_errors": ("summit", estimate.model_summit_errors),
     }
 
 
@@ -180,11 +161,11 @@ def _scans(estimate, notes):
     inspection = estimate.inspection
     flags = [*estimate.flags_by_kind.items(), *((NOTE, note) for note in notes)]
     return {
-        "line_jump": ("axis", list(estimate.line_jump[::-1]), {"units": "m", "long_name": "typical step"}),
-        "noise": ("size", [maps.noise for maps in inspection.sizes], {"units": "m", "long_name": "rms of white noise"}),
-        "scans": ("size", [len(maps.names) for maps in inspection.sizes], {"long_name": "number of each size"}),
-        "counted": ((), len(inspection.counted), {"long_name": "number of sizes that count for the moments"}),
-        "pixel": (("size", "axis"), [maps.frame.pixel for maps in inspection.sizes], {"units": "m"}),
+        "line_jump": ("axis", list(estimate.line_jump[::-1])),
+        "noise": ("size", [maps.noise for maps in inspection.sizes]),
+        "scans": ("size", [len(maps.names) for maps in inspection.sizes]),
+        "counted": ((), len(inspection.counted)),
+        "pixel": (("size", "axis"), [maps.frame.pixel for maps in inspection.sizes]),
         "points": (("size", "axis"), [maps.frame.shape for maps in inspection.sizes]),
         "files": ((), "\n".join(inspection.names)),
         **flagged(flags),

@@ -55,38 +55,32 @@ def layout(density: Density, moments: Settings, measured: Moments | None = None)
     return xr.Dataset(
         variables
         | {
-            "density": (
-                "height",
-                density(z),
-                {"units": "1", "long_name": "probability density of the standardised height"},
-            ),
-            "rms": ((), moments.rms, {"units": "m"}),
-            "skewness": ((), moments.skewness, {"units": "1"}),
-            "kurtosis": ((), moments.kurtosis, {"units": "1"}),
+            "density": ("height", density(z)),
+            "rms": ((), moments.rms),
+            "skewness": ((), moments.skewness),
+            "kurtosis": ((), moments.kurtosis),
         }
         | ({} if measured is None else _measured_variables(measured)),
-        coords=coordinates | {"height": ("height", z, {"units": "1"})},
+        coords=coordinates | {"height": ("height", z)},
     )
 
 
 def _maximum_entropy(density):
     """Variables and coordinates of Eq. (3)."""
-    name = {"units": "1", "long_name": "λ of Eq. (3), standardised heights"}
-    return {"multiplier": ("order", list(density.multipliers), name)}, {"order": [1, 2, 3, 4]}
+    return {"multiplier": ("order", list(density.multipliers))}, {"order": [1, 2, 3, 4]}
 
 
 def _measured_form(density):
     """Variables and coordinates of measured quantiles."""
-    name = {"units": "1", "long_name": "measured height of a normal score, up to scale and mean"}
-    return {"quantile": ("score", density.heights, name)}, {"score": ("score", density.scores, {"units": "1"})}
+    return {"quantile": ("score", density.heights)}, {"score": ("score", density.scores)}
 
 
 def _measured_variables(moments):
     """Variables of the measured moments."""
     return {
-        "measured_skewness": ((), moments.skewness, {"units": "1"}),
-        "measured_kurtosis": ((), moments.kurtosis, {"units": "1"}),
-        "distance": ((), moments.distance, {"units": "1", "long_name": "to the moments used, in standard errors"}),
+        "measured_skewness": ((), moments.skewness),
+        "measured_kurtosis": ((), moments.kurtosis),
+        "distance": ((), moments.distance),
     }
 
 

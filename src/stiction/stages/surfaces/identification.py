@@ -66,13 +66,13 @@ def compute(heights: xr.Dataset, surface: str, settings: Settings) -> xr.Dataset
 def layout(identified: Identification, target: SummitTarget) -> xr.Dataset:
     """Dataset of the parameters of Eq. (7), simulated summit statistics and those asked for."""
     return parameters.variables(identified.spectrum).assign(
-        mean_radius=((), identified.mean_radius, {"units": "m"}),
-        mean_radius_error=((), identified.mean_radius_error, {"units": "m"}),
-        summit_density=((), identified.density, {"units": "m-2"}),
-        summit_density_error=((), identified.density_error, {"units": "m-2"}),
-        target_mean_radius=((), target.mean_radius, {"units": "m"}),
-        target_summit_density=((), target.density, {"units": "m-2"}),
-        target_rms=((), target.rms, {"units": "m"}),
+        mean_radius=((), identified.mean_radius),
+        mean_radius_error=((), identified.mean_radius_error),
+        summit_density=((), identified.density),
+        summit_density_error=((), identified.density_error),
+        target_mean_radius=((), target.mean_radius),
+        target_summit_density=((), target.density),
+        target_rms=((), target.rms),
         evaluations=((), identified.evaluations),
     )
 

@@ -60,17 +60,16 @@ def layout(rings: tuple, steps: tuple, misfits: dict) -> xr.Dataset:
     sampling_misfit of exact spectra (k,), closed_form_misfit [-].
     """
     (wavenumber, target), (underlying, periodogram) = rings, steps
-    unit, mean = {"units": "m2"}, {"units": "1", "long_name": "mean error |ln(s / s_Z)| of a ring"}
     return xr.Dataset(
         {
-            "target": ("wavenumber", target, unit),
-            "underlying": (("iteration", "wavenumber"), underlying, unit),
-            "periodogram": (("iteration", "field", "wavenumber"), periodogram, unit),
+            "target": ("wavenumber", target),
+            "underlying": (("iteration", "wavenumber"), underlying),
+            "periodogram": (("iteration", "field", "wavenumber"), periodogram),
         }
-        | {name: (("iteration",)[: np.ndim(values)], values, mean) for name, values in misfits.items()},
+        | {name: (("iteration",)[: np.ndim(values)], values) for name, values in misfits.items()},
         coords={
             "iteration": np.arange(1, len(underlying) + 1),
-            "wavenumber": ("wavenumber", wavenumber, {"units": "rad m-1"}),
+            "wavenumber": ("wavenumber", wavenumber),
         },
     )
 

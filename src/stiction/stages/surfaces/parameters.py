@@ -10,18 +10,19 @@ import xarray as xr
 from stiction.config.units import from_si
 from stiction.surface.spectrum import CutoffSelfAffine, Spectrum, TabulatedSpectrum, correlation_length
 
-_UNITS = {"plateau": "m4", "floor": "m4", "corner": "rad m-1", "cutoff": "rad m-1"}
+#: Parameters of Eq. (7).
+_PARAMETERS = ("plateau", "floor", "corner", "cutoff")
 
 
 def variables(spectrum: Spectrum) -> xr.Dataset:
     """Dataset of the four parameters of Eq. (7), or of a table and its cut-off."""
     if isinstance(spectrum, CutoffSelfAffine):
-        return xr.Dataset({name: ((), getattr(spectrum, name), {"units": unit}) for name, unit in _UNITS.items()})
+        return xr.Dataset({name: ((), getattr(spectrum, name)) for name in _PARAMETERS})
     return xr.Dataset(
         {
-            "table_wavenumber": ("node", spectrum.wavenumber, {"units": "rad m-1"}),
-            "table_density": ("node", spectrum.density, {"units": "m4"}),
-            "cutoff": ((), spectrum.cutoff, {"units": _UNITS["cutoff"]}),
+            "table_wavenumber": ("node", spectrum.wavenumber),
+            "table_density": ("node", spectrum.density),
+            "cutoff": ((), spectrum.cutoff),
         }
     )
 
@@ -30,7 +31,7 @@ def spectrum_of(dataset: xr.Dataset) -> Spectrum:
     """Spectrum of Eq. (7) from the dataset of stage identification, or as tabulated from stage spectrum."""
     if "node" in dataset.dims:
         return TabulatedSpectrum(dataset.table_wavenumber.values, dataset.table_density.values, float(dataset.cutoff))
-    return CutoffSelfAffine(**{name: float(dataset[name]) for name in _UNITS})
+    return CutoffSelfAffine(**{name: float(dataset[name]) for name in _PARAMETERS})
 
 
 def refuse_long_correlation(surface: str, spectrum: Spectrum, lengths: Mapping[str, float]) -> None:

@@ -43,16 +43,16 @@ def layout(file: ScanFile) -> xr.Dataset:
     elevation = np.asarray(scan.heights - np.nanmean(scan.heights), np.float32)
     return xr.Dataset(
         {
-            "elevation": (("fast", "slow"), elevation, {"units": "m"}),
-            "size": ("axis", list(scan.size), {"units": "m", "long_name": "number of points times their distance"}),
+            "elevation": (("fast", "slow"), elevation),
+            "size": ("axis", list(scan.size)),
             "file": ((), scan.name),
-            "channel": ((), file.channel, {"long_name": "channel of the file that was read"}),
-            "unit": ((), file.unit, {"long_name": "unit of the heights in the file"}),
-            "notes": ((), "\n".join(file.notes), {"long_name": "sentences on channel and instrument, one per line"}),
+            "channel": ((), file.channel),
+            "unit": ((), file.unit),
+            "notes": ((), "\n".join(file.notes)),
         },
         coords={
-            "fast": ("fast", fast, {"units": "m"}),
-            "slow": ("slow", slow, {"units": "m"}),
+            "fast": ("fast", fast),
+            "slow": ("slow", slow),
             "axis": ["fast", "slow"],
         },
     )

@@ -97,13 +97,12 @@ def layout(
     The three spectra have unit variance and are given at the wave numbers of ``underlying``.
     """
     zeta = underlying.wavenumber
-    unit = {"units": "m2"}
     return parameters.variables(target).assign(
-        target=("wavenumber", target(zeta) / target.variance, unit),
-        underlying=("wavenumber", underlying.density, unit),
-        achieved=("wavenumber", achieved(zeta), unit),
-        defect=((), defect, {"units": "1", "long_name": "share of the variance that no Gaussian field provides"}),
-        wavenumber=("wavenumber", zeta, {"units": "rad m-1"}),
+        target=("wavenumber", target(zeta) / target.variance),
+        underlying=("wavenumber", underlying.density),
+        achieved=("wavenumber", achieved(zeta)),
+        defect=((), defect),
+        wavenumber=("wavenumber", zeta),
     )
 
 

@@ -47,8 +47,8 @@ def flagged(flags: Iterable[tuple[str, str]]) -> dict[str, tuple]:
     """Variables of a dataset from the kinds and sentences of its flags."""
     flags = list(flags)
     return {
-        "flags": ((), "\n".join(sentence for _, sentence in flags), {"long_name": "limits, one per line"}),
-        "flag_kinds": ((), "\n".join(kind for kind, _ in flags), {"long_name": "kinds of these limits, one per line"}),
+        "flags": ((), "\n".join(sentence for _, sentence in flags)),
+        "flag_kinds": ((), "\n".join(kind for kind, _ in flags)),
     }
 
 

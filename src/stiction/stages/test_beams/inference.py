@@ -426,8 +426,8 @@ def input_dataset(prior: KnownInputs, posterior: KnownInputs, count: int) -> xr.
             "prior_deviation": ("input", before.deviations),
             "shift": ("input", after.mean),
             "deviation": ("input", after.deviations),
-            "correlation": (("combination", "input"), [each.correlations for each in combinations], {"units": "1"}),
-            "remaining": ("combination", [each.remaining for each in combinations], {"units": "1"}),
+            "correlation": (("combination", "input"), [each.correlations for each in combinations]),
+            "remaining": ("combination", [each.remaining for each in combinations]),
         },
         coords={"input": list(before.names)},
     )
@@ -450,8 +450,8 @@ def length_dataset(
     numbers |= {"reduced": [beam.reduced for beam in beams]}
     numbers |= {"rest": posterior.mean[[posterior.names.index(inference.rest(beam.condition)) for beam in beams]]}
     return xr.Dataset(
-        {name: ("datum", value, {"units": "m"}) for name, value in lengths.items()}
-        | {f"datum_{name}": ("datum", value, {"units": "1"}) for name, value in numbers.items()}
+        {name: ("datum", value) for name, value in lengths.items()}
+        | {f"datum_{name}": ("datum", value) for name, value in numbers.items()}
         | _quantiles("datum", posterior, responses[: len(beams)]),
         coords={
             "datum": [beam.condition for beam in beams],
@@ -485,10 +485,10 @@ def force_dataset(
     measured, computed_forces, errors = np.transpose(pull_offs)
     numbers = {"error": errors} | _both(prior, posterior, responses)
     return xr.Dataset(
-        {f"force_{name}": ("force", value, {"units": "1"}) for name, value in numbers.items()}
+        {f"force_{name}": ("force", value) for name, value in numbers.items()}
         | {
-            "measured_force": ("force", measured, {"units": "N"}),
-            "computed_force": ("force", computed_forces, {"units": "N"}),
+            "measured_force": ("force", measured),
+            "computed_force": ("force", computed_forces),
         },
         coords={
             "force": [probe.condition for probe in probes],
@@ -506,13 +506,13 @@ def count_dataset(counts: Counts, posterior: KnownInputs, stuck: Mapping[str, St
         {
             "stuck": ("count", counts.stuck),
             "counted": ("count", counts.beams),
-            "stuck_before": ("count", counts.share(np.zeros_like(posterior.mean)), {"units": "1"}),
-            "stuck_after": ("count", counts.share(posterior.mean), {"units": "1"}),
+            "stuck_before": ("count", counts.share(np.zeros_like(posterior.mean))),
+            "stuck_after": ("count", counts.share(posterior.mean)),
         },
         coords={
             "array_of_count": ("count", np.array(names, str)),
             "humidity_of_count": ("count", np.array(humidities, float)),
-            "length_of_count": ("count", np.array(lengths, float), {"units": "m"}),
+            "length_of_count": ("count", np.array(lengths, float)),
         },
     )
 
@@ -530,7 +530,7 @@ def agreement_dataset(prior: KnownInputs, lengths: CrackData, counts: Counts, nu
         "p_value": inference.p_value(prior, lengths, counts),
         "p_value_of_inputs": inference.p_value(inputs, *alone),
     }
-    return xr.Dataset({name: ((), value, {"units": "1"}) for name, value in p_values.items()})
+    return xr.Dataset({name: ((), value) for name, value in p_values.items()})
 
 
 def _both(prior, posterior, responses):
@@ -543,7 +543,7 @@ def _quantiles(dimension, posterior, responses):
     """Quantiles of ln l after the measurement, less ln l as computed, by their normal scores."""
     quantiles = posterior.quantiles(responses)
     return {
-        f"{dimension}_quantile": ((dimension, "score"), quantiles, {"units": "1"}),
+        f"{dimension}_quantile": ((dimension, "score"), quantiles),
         "score": ("score", inference.SCORES),
     }
 
@@ -563,8 +563,8 @@ def result_dataset(
     sizes = {size: [getattr(result.beam, size) for result in of_device] for size in BEAM_SIZES if of_device[0].beam}
     return xr.Dataset(
         {"centre": ("result", *centre)}
-        | {f"own_{size}": ("result", values, {"units": "m"}) for size, values in sizes.items()}
-        | {f"result_{name}": ("result", value, {"units": "1"}) for name, value in numbers.items()}
+        | {f"own_{size}": ("result", values) for size, values in sizes.items()}
+        | {f"result_{name}": ("result", value) for name, value in numbers.items()}
         | _quantiles("result", posterior, responses),
         coords={
             "result": [result.condition for result in of_device],
@@ -586,7 +586,7 @@ def without_lengthening(results: xr.Dataset, measured: np.ndarray, updated: np.n
     longer = xr.DataArray(np.maximum(np.minimum(measured, updated), 0), dims="result")
     moved = {name: results[name] - longer for name in ("result_shift", "result_quantile")}
     adhesion = np.exp(np.minimum(updated, 0) / arcs.LENGTH_POWER)
-    return results.assign(moved | {"adhesion_of_tips": ("result", adhesion, {"units": "1"})})
+    return results.assign(moved | {"adhesion_of_tips": ("result", adhesion)})
 
 
 def further_dataset(
@@ -621,8 +621,8 @@ def further_dataset(
     shape = len(of_device), len(further), len(FURTHER)
     return xr.Dataset(
         {
-            "result_after_further": (("result", "further", "beams"), np.reshape(remaining, shape), {"units": "1"}),
-            "further_length": ("further", [LONG * float(beam.budget.centre) for beam, *_ in further], {"units": "m"}),
+            "result_after_further": (("result", "further", "beams"), np.reshape(remaining, shape)),
+            "further_length": ("further", [LONG * float(beam.budget.centre) for beam, *_ in further]),
         },
         coords={"further": [beam.condition for beam, *_ in further], "beams": list(FURTHER)},
     )
@@ -714,7 +714,7 @@ def _shares(update, sizes, share):
         for name, each in quantiles.items():
             expected[name].append(share(*at.values(), float(size), each.sel(at).values))
     return {
-        name: stacked.copy(data=values).unstack("at").transpose(*sizes.dims).reindex_like(sizes).assign_attrs(units="1")
+        name: stacked.copy(data=values).unstack("at").transpose(*sizes.dims).reindex_like(sizes)
         for name, values in expected.items()
     }
 

@@ -115,7 +115,7 @@ def with_reruns(
 ) -> xr.Dataset:
     """Dataset of an update with its reruns, or with the reason why there are none."""
     columns = np.reshape(rows, (-1, len(NUMBERS))).T
-    numbers = {name: ("again", column, {"units": "1"}) for name, column in zip(NUMBERS, columns, strict=True)}
+    numbers = {name: ("again", column) for name, column in zip(NUMBERS, columns, strict=True)}
     return update.assign(numbers).assign_coords(again=np.array(names, str)).assign_attrs(refused=refused)
 
 

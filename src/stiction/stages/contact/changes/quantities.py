@@ -51,7 +51,7 @@ def compute(
         for other in changed
     ]
     contacts = stage_contact.compute_each(alternatives, pair, "NG", settings)
-    return [contact.assign(difference=((), difference, {"units": "1"})) for contact in contacts]
+    return [contact.assign(difference=((), difference)) for contact in contacts]
 
 
 def from_surfaces(

@@ -158,15 +158,15 @@ def layout(summits: Sequence[Summits], bearing_areas: Sequence[np.ndarray], grid
     )
     return xr.Dataset(
         {
-            "top": ("summit", tops.astype(np.float32), {"units": "m"}),  # drawn in single precision
-            "curvature": ("summit", curvatures, {"units": "m-1"}),
-            "count": ("strip", np.array([above_mean.sum() for above_mean in above]), {"units": "1"}),
-            "area": ((), summits[0].area, {"units": "m2", "long_name": "area in which a point can be a summit"}),
-            "bearing_area": (("strip", "height"), np.array(bearing_areas, np.float32), {"units": "1"}),
-            "step": ((), grid.step, {"units": "m"}),
-            "below": ((), grid.below, {"units": "1", "long_name": "number of grid points with negative distance"}),
+            "top": ("summit", tops.astype(np.float32)),  # drawn in single precision
+            "curvature": ("summit", curvatures),
+            "count": ("strip", np.array([above_mean.sum() for above_mean in above])),
+            "area": ((), summits[0].area),
+            "bearing_area": (("strip", "height"), np.array(bearing_areas, np.float32)),
+            "step": ((), grid.step),
+            "below": ((), grid.below),
         },
-        coords={"height": ("height", grid.bearing, {"units": "m"})},
+        coords={"height": ("height", grid.bearing)},
     )
 
 

@@ -1,0 +1,104 @@
+"""Rows and errors of the estimate in dry air, from the files of `stiction.estimate.learning.dry` and its patches."""
+
+import math
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from stiction.config.units import to_si
+from stiction.devices.risk import CONFIDENCE
+from stiction.estimate.dry import DryPatch, DryTip, lengths, reciprocals
+from stiction.estimate.learning import dry, dry_patches
+from stiction.estimate.learning.design import Point
+from stiction.estimate.learning.errors import Processes, Tested, beside, lengths_of
+from stiction.estimate.learning.fit import DesignRows
+from stiction.estimate.learning.rows import change_of, of_tips, rows_of, stored
+from stiction.estimate.learning.training import FACTORS
+from stiction.estimate.statistics import of_pair
+
+#: Coordinates that the changes of tips and of forces by full contact depend on. ASSUME: no others.
+OF_FULL, OF_RATIO = (0, 1, 2, 6, 7), (0, 1, 2, 6)
+
+
+def tips_of(point: Point, constant: float, modulus: float) -> list[DryTip]:
+    """Tips of a point at a Hamaker constant [J], by stiffness."""
+    heights, width = of_pair(point.sides), to_si(point.width, "um")
+    return [DryTip(heights, constant, factor * point.stiffness, width, modulus) for factor in FACTORS]
+
+
+def patches_of(point: Point, numbers: Mapping[str, Any], modulus: float) -> list[DryPatch]:
+    """Patches of a point, by Hamaker constant."""
+    heights, area = of_pair(point.sides), float(np.prod(to_si(numbers["sides"], "um")))
+    return [DryPatch(heights, float(constant), area, modulus) for constant in numbers["constants"]]
+
+
+def rows_of_tips(folder: Path, name: str, modulus: float) -> DesignRows:
+    """Rows of all tips of a set on summits."""
+    return rows_of(
+        (point.number, tip.coordinates, of_beam / tip.flat_slope)
+        for point, numbers in stored(folder / dry.FOLDER, name, dry.SETS)
+        for constant, slopes in zip(numbers["constants"], numbers["slopes"], strict=True)
+        for tip, of_beam in zip(tips_of(point, float(constant), modulus), slopes, strict=True)
+    )
+
+
+def _relative(pressures, patch):
+    """Pull-off forces of a patch over that of flats (n,)."""
+    return pressures.astype(float) * patch.area / patch.flat_force
+
+
+def rows_of_patches(folder: Path, name: str, modulus: float) -> DesignRows:
+    """Rows of all patches of a set on summits."""
+    return rows_of(
+        (point.number, patch.coordinates, _relative(pressures, patch))
+        for point, numbers in stored(folder / dry_patches.FOLDER, name, dry_patches.SETS)
+        for patch, pressures in zip(patches_of(point, numbers, modulus), numbers["forces"], strict=True)
+    )
+
+
+def rows_of_full(folder: Path, name: str, modulus: float) -> DesignRows:
+    """Rows of the logarithm of the ratio that a run applies to tips, at three slopes, and of its power."""
+    coordinates, ratios, powers, surface, noise = [], [], [], [], []
+    for point, numbers in stored(folder / dry.FOLDER, name, dry.SETS):
+        if np.isfinite(numbers["full"]).all():
+            changes = dry.changes_of(*(numbers[key] for key in ("slope", "full", "summits")))
+            middle = tips_of(point, float(numbers["constants"][0]), modulus)[0]
+            coordinates += [middle.at(slope).coordinates for slope in changes.slopes]
+            ratios += np.log(changes.change.at_most(CONFIDENCE).ratio[0]).tolist()
+            powers += [changes.change.power.item()] * len(changes.slopes)
+            noise += changes.change.ratio_error[0].tolist()
+            surface += [point.number] * len(changes.slopes)
+    values = {"ratio": np.array(ratios), "power": np.array(powers)}
+    return DesignRows(np.array(coordinates), values, np.array(surface), np.array(noise))
+
+
+def rows_of_ratios(folder: Path, name: str, modulus: float) -> DesignRows:
+    """Rows of the logarithm of the ratio, and of the power, of the change of pull-off forces by full contact."""
+    every = stored(folder / dry_patches.FOLDER, name, dry_patches.SETS)
+    found = [(point, numbers) for point, numbers in every if np.isfinite(numbers["ratio"])]
+    coordinates = np.array([patches_of(*one, modulus)[0].coordinates for one in found])
+    changes = [change_of(numbers) for _, numbers in found]
+    values = {"ratio": np.log([change.ratio for change in changes]), "power": np.array([c.power for c in changes])}
+    noise = np.array([float(numbers["ratio_error"]) for _, numbers in found])
+    return DesignRows(coordinates, values, np.array([point.number for point, _ in found]), noise)
+
+
+def tested(folder: Path, sets: str, modulus: float, score: float, processes: Processes) -> Iterator[Tested]:
+    """Lengths of some sets at a normal score up to -2, as `stiction.estimate.learning.errors.tested`."""
+    for point, numbers in stored(folder / dry.FOLDER, sets, dry.SETS):
+        if np.isfinite(numbers["changed"]).all():
+            tip = tips_of(point, float(numbers["constants"][0]), modulus)[FACTORS.index(1.0)]
+            true = lengths_of(of_tips(numbers["changed"]), math.log(1.5))
+            yield beside(point, true, score, lambda of=tip, at=point: lengths(of, 1.0, *processes(at)))
+
+
+def tested_forces(folder: Path, sets: str, modulus: float, score: float, processes: Processes) -> Iterator[Tested]:
+    """Reciprocals of forces of some sets, as `tested`."""
+    for point, numbers in stored(folder / dry_patches.FOLDER, sets, dry_patches.SETS):
+        if np.isfinite(numbers["ratio"]):
+            patch, pressures = patches_of(point, numbers, modulus)[0], numbers["forces"][0].astype(float)
+            changed = change_of(numbers).of(pressures)(pressures)
+            true = lengths_of(of_tips(_relative(changed, patch)), -math.log(patch.flat_force))
+            yield beside(point, true, score, lambda of=patch, at=point: reciprocals(of, *processes(at)))
