@@ -214,8 +214,8 @@ def decides(answer: Answer) -> str:
     held = END_STATES[last.shape].by if last.shape in END_STATES else "liquid that dries"
     held = "tip" if answer.is_by_tip else held
     stuck = "" if answer.sought.more_is_better else f", stuck by {'the ' if held != 'beam or tip' else ''}{held}"
-    worst = ", the worst of the stated airs" * (len(answer.airs) > 1)
-    sentence = f"{_air(answer, last.humidity)}{worst}{stuck}."
+    among = " of the stated airs" * (len(answer.airs) > 1)
+    sentence = f"{_air(answer, last.humidity)}{among}{stuck}."
     if answer.between and _is_stricter(answer, answer.between.size):
         sentence += f" Between them, RH {answer.between.humidity:.2g} is worse."
     change = largest.factor - 1

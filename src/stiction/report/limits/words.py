@@ -301,8 +301,8 @@ SENTENCES: dict[str, Callable[..., str]] = {
         f"rough surfaces they are too large, on smooth ones with gentle slopes too small, by up to "
         f"{in_percent(largest_shortfall())}."
     ),
-    "few_strips": lambda share: (
-        f"One strip of surface makes {in_percent(share)} of the squared error of full elastic contact. Others like it "
+    "few_strips": lambda part: (
+        f"One strip of surface makes {in_percent(part)} of the squared error of full elastic contact. Others like it "
         "can be missing, so that the change and its error are themselves hardly known."
     ),
     # Water
