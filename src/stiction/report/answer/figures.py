@@ -146,7 +146,7 @@ def _stuck(panel: Axes, answer):
             colour = humidity_colour(air.humidity)
             panel.plot(sizes, air.curve[0], "--", color=colour, alpha=0.8, linewidth=1, label=Air(air.humidity).words)
     colour, decides = humidity_colour(answer.together.humidity), Air(answer.together.humidity).words
-    label_of_airs = f"all airs, {decides} decides" if len(answer.airs) > 1 and np.isfinite(answer.share) else decides
+    label_of_airs = f"all airs, mostly {decides}" if len(answer.airs) > 1 and np.isfinite(answer.share) else decides
     panel.plot(sizes, expected, color=colour, linewidth=1.6, label=label_of_airs)
     style = {"color": colour, "alpha": 0.2, "linewidth": 0}
     panel.fill_between(sizes, *band, where=_resolved(band[1]), label="its 95 % band", **style)
