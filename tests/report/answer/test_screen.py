@@ -62,7 +62,7 @@ def test_without_a_length_the_answer_is_the_length_to_build_in_the_worst_air():
     assert answer.build == pytest.approx(least(lengths[0.67]), rel=5e-3)
     assert (shown.tone, shown.sign) == ("good", "Length to build")
     assert shown.answer == f"No longer than {safe_size(answer.build, LENGTH)}."
-    assert shown.points["What decides"].startswith("RH 0.67 of the stated airs, stuck by the tip.")
+    assert shown.points["What decides"].startswith("RH 0.67, the worst of the stated airs, stuck by the tip.")
     assert "at relative humidities of 0.44, 0.67 (95 % confidence, if the model holds)." in shown.basis[0]
     assert "All inputs count as exact." in shown.basis[1]
     assert shown.cells["RH"].tolist() == ["0.44", "0.67"]
@@ -92,7 +92,7 @@ def test_dry_air_is_in_words():
     stopped = screen_of(stopper_answer(forces), STOPPER)
     released = screen_of(beam_answer(section, {0.0: of_length(400e-6)}), section)
     for shown in (stopped, released):
-        assert shown.points["What decides"].startswith(("Dry air of the stated airs", "Dry air, stuck by"))
+        assert shown.points["What decides"].startswith(("Dry air, the worst", "Dry air, stuck by"))
         assert shown.cells.RH[0] == "dry"
     assert " in dry air (95 % confidence, if the model holds)." in beam_page(CANTILEVER, {0.0: safe()}).summary.basis[0]
 
@@ -313,7 +313,7 @@ def test_what_decides_a_stopper_is_the_air_of_the_largest_force_in_its_table():
         for force in (1e-9, 19e-6, 1.0):
             shown = screen_of(stopper_answer(forces.assign(restoring_force=force)), STOPPER)
             worst = shown.cells.RH[shown.cells["force to build [µN]"].astype(float).idxmax()]
-            assert shown.points["What decides"].startswith("Dry air of " if worst == "dry" else f"RH {worst} of ")
+            assert shown.points["What decides"].startswith("Dry air, " if worst == "dry" else f"RH {worst}, ")
 
 
 def test_an_air_that_is_stricter_alone_is_named_beside_the_one_that_decides_together():
