@@ -138,8 +138,8 @@ def test_the_ladder_has_a_row_for_each_step_and_the_curve_beside_it():
     steps, stuck = ladder(answered()).axes
     assert beside(steps) == [
         "estimate 160 µm",
-        "error of the simulation 155 µm (-10.0 %)",
-        "uncertainty of the inputs 140 µm (-10.0 %)",
+        "error of the simulation 155 µm (−10.0 %)",
+        "uncertainty of the inputs 140 µm (−10.0 %)",
     ]
     assert not steps.texts, "nothing lies on bars and lines"
     assert "all airs, mostly RH 0.92" in lines_of(stuck)

@@ -15,6 +15,7 @@ from stiction.devices.risk import one_in
 from stiction.plan.names import by_name
 from stiction.report.answer import tables, words
 from stiction.report.format import safe_size
+from stiction.report.html import with_minus
 from stiction.report.style import (
     BUILD,
     DOUBLE,
@@ -82,7 +83,7 @@ def _steps(panel: Axes, answer):
 def _label_of_row(answer, row):
     """Cause of a row of the ladder with its size and change."""
     step = answer.known_steps[row]
-    change = f" ({100 * (step.factor - 1):+.1f} %)" if row else ""
+    change = with_minus(f" ({100 * (step.factor - 1):+.1f} %)") if row else ""
     return f"{textwrap.fill(words.CAUSES[step.cause][0], _WIDE)}\n{safe_size(step.size, answer.sought)}{change}"
 
 
