@@ -251,16 +251,16 @@ def all_rules() -> str:
 
 
 #: Size of a box of the picture, distances between boxes, and columns and rows of the boxes.
-_BOX, _GAP = (190, 54), (40, 30)
+_BOX, _GAP = (168, 54), (20, 26)
 _PLACES = {
     "heights": (0, 0),
     "identification": (1, 0),
-    "spectrum": (2, 0),
-    "contact_chunk": (2, 1),
-    "contact": (1, 1),
-    "forces": (0, 1),
-    "chaos": (0, 2),
-    "beams": (1, 2),
+    "spectrum": (1, 1),
+    "contact_chunk": (0, 1),
+    "contact": (0, 2),
+    "forces": (1, 2),
+    "chaos": (1, 3),
+    "beams": (0, 3),
 }
 
 
@@ -273,7 +273,7 @@ def links() -> list[tuple[str, str]]:
 
 def picture() -> str:
     """Chain of the paper as SVG, in colours that are readable on any ground."""
-    width, height = (n * (_BOX[k] + _GAP[k]) + _GAP[k] for k, n in enumerate((3, 3)))
+    width, height = (n * (_BOX[k] + _GAP[k]) + _GAP[k] for k, n in enumerate((2, 4)))
     parts = [_arrow(*link) for link in links()] + [_box(name) for name in CHAIN]
     about = "; ".join(f"{name} reads {', '.join(read_by(name)) or 'no results'}" for name in CHAIN)
     return "\n".join(

@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from stiction.report.format import error_alone, number, with_error
-from stiction.report.style import SINGLE, humidity_axis, panels, save, styled
+from stiction.report.style import SINGLE, humidity_axis, letter, panels, save, styled
 from stiction.report.table import Table
 
 #: Pairs of the measured and of the true surfaces.
@@ -81,6 +81,7 @@ def drawn(cracks):
     )
     differences.set(xlabel="relative humidity [–]", ylabel="difference [%]")
     humidity_axis(differences)
+    letter([lengths, differences], ["crack lengths", "difference, with both errors"])
     return figure
 
 

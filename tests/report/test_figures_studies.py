@@ -250,6 +250,10 @@ def test_figure_19_shows_gamma_over_the_energy_of_the_law_beside_the_difference_
     low, high = panel.get_ylim()
     assert low < min(heights(panel)[0])
     assert high > max(heights(panel)[0])
+    of_panels = figures_studies.mesh_convergence(mesh(), correlation()).axes
+    named = [[text.get_text() for text in each.get_legend().get_texts()] for each in of_panels[1:]]
+    assert {"paper's 2.5 %", "axis linear below 2.5 %"} <= set(named[0])
+    assert "all beyond $l^m$: ± 0.01" in named[1]
 
 
 def lines_of(panel):
@@ -260,7 +264,8 @@ def lines_of(panel):
 def test_published_and_measured_crack_lengths_are_lines_relative_to_the_base():
     base = VARIANTS["a", "base"].isel(humidity=0).crack_length.values.mean() * 1e6
     found = lines_of(figures_studies.variants(VARIANTS, PUBLISHED).axes[0])
-    known = {"base": 0, "published": 100 * (800 / base - 1), "measured ± standard deviation": 100 * (820 / base - 1)}
+    of_base = f"base: beams on {VARIANTS['a', 'base'].sizes['strip']} samples"
+    known = {of_base: 0, "published": 100 * (800 / base - 1), "measured ± standard deviation": 100 * (820 / base - 1)}
     assert {label: found[label] for label in known} == pytest.approx(known)
     without = lines_of(figures_studies.variants(VARIANTS, PUBLISHED[:0]).axes[0])
     assert not {"published", "measured ± standard deviation"} & without.keys()

@@ -441,7 +441,7 @@ def bars(axes, label):
 
 
 def test_experiment_is_converted_by_eq_13_with_unequal_bars(drawn):
-    centres, ends = bars(drawn["15"].axes[1], "measured")
+    centres, ends = bars(drawn["15"].axes[1], "measured, mean ± std")
     lengths = np.array([700, 600])
     scale = 1.5 * 164e9 * 20e-6**2 * 2.6e-6**3 * 1e3  # mJ/m² · m⁴
     np.testing.assert_allclose(centres, [HUMIDITIES, scale / (lengths * 1e-6) ** 4])
@@ -513,10 +513,10 @@ def test_markers_of_models_do_not_cover_the_measured_values(drawn):
     for axes in drawn["15"].axes[:2]:
         containers = [c for c in axes.containers if isinstance(c, ErrorbarContainer)]
         offsets = {c.get_label(): c[0].get_transform().transform((0.6, 10))[0] for c in containers}
-        offsets = {label: place - offsets["measured"] for label, place in offsets.items()}
+        offsets = {label: place - offsets["measured, mean ± std"] for label, place in offsets.items()}
         assert {label for label, offset in offsets.items() if offset < 0} == {c for c in offsets if "beams" in c}
         assert {label for label, offset in offsets.items() if offset > 0} == {c for c in offsets if "published" in c}
-        assert max(containers, key=lambda c: c[0].get_zorder()).get_label() == "measured"
+        assert max(containers, key=lambda c: c[0].get_zorder()).get_label() == "measured, mean ± std"
 
 
 def test_published_results_of_two_models_have_two_names_and_two_markers(drawn):
@@ -539,14 +539,14 @@ def test_medians_of_weak_adhesion_stay_within_the_axes(pairs, published):
 
 def test_pair_of_the_user_has_no_measured_values(drawn, pairs, published):
     known, own = (drawn["15"].axes[k].get_legend_handles_labels()[1] for k in (0, 2))
-    assert set(known) - set(own) == {"measured", "NG: published"}
+    assert set(known) - set(own) == {"measured, mean ± std", "NG: published"}
     assert len(axes_of(adhesion_energies({"mine": pairs["mine"]}, published, EVERY))) == 2
 
 
 def test_the_legend_lists_the_curves_of_all_pairs(pairs, published):
     figure = adhesion_energies({name: pairs[name] for name in ("mine", "b")}, published, EVERY)
     named = {text.get_text() for text in figure.legends[0].get_texts()}
-    assert {"measured", "NG: published", "GEO: published", "GEO: beams, mean ± std"} <= named
+    assert {"measured, mean ± std", "NG: published", "GEO: published", "GEO: beams, mean ± std"} <= named
 
 
 def test_a_single_humidity_shows_its_median_and_quantiles(pairs, published):

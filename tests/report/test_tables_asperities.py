@@ -130,5 +130,5 @@ def test_text_of_the_figure_of_three_pairs_can_be_read_on_a_phone():
     assert [text.get_text() for text in figure.legends[0].get_texts()][-1] == "bars: ± standard error"
     numbers = [text for text in figure.axes[0].texts if text.get_text()]
     assert {text.xy[0] for text in numbers} == {1}, "numbers are in a column"
-    assert numbers[-1].get_text() == "in water", "the column says whose numbers it has"
+    assert numbers[-1].get_text() == "in water [%]", "the column says whose numbers it has"
     assert len({panel.get_xlim() for panel in figure.axes}) == 1

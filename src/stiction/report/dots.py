@@ -17,6 +17,8 @@ _THICK, _END = 3.5, 7
 #: and free part of an axis on its left.
 _AWAY, _CHARACTER, _FILLED, _LEFT = 0.08, 0.06, 0.55, 0.06
 _NUMBER = {"textcoords": "offset points", "va": "center", "fontsize": 7, "path_effects": OUTLINED}
+#: White ground of a number, so that no line of a panel strikes it through.
+_GROUND = {"facecolor": "white", "edgecolor": "none", "pad": 0.8}
 
 
 @dataclass(frozen=True)
@@ -46,7 +48,8 @@ def draw(panel: Axes, rows: Mapping[str, Sequence[Mark]], *, column: str | None 
             if column is not None:
                 panel.annotate(mark.text, (1, row), **in_column, color=mark.text_color)
             else:
-                panel.annotate(mark.text, (mark.high + mark.error, row), (6, 0), **_NUMBER, color=mark.text_color)
+                at, style = (mark.high + mark.error, row), {"color": mark.text_color, "bbox": _GROUND}
+                panel.annotate(mark.text, at, (6, 0), **_NUMBER, **style)
     panel.set_yticks(range(len(rows)), list(rows))
     panel.tick_params(axis="y", length=0)
     panel.set_ylim(len(rows) - 0.4, -0.6 - bool(column))

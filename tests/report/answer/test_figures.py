@@ -106,6 +106,13 @@ def test_stricter_sizes_are_marked_at_the_allowed_fraction_and_stated_in_the_tit
     assert not any(line.get_marker() == "v" for line in without.lines)
 
 
+def test_the_ladder_which_has_no_titles_names_stricter_sizes_in_its_legend():
+    dried = Unasked(f"{Name.COLLAPSE}_water", "longest beam that stands", 90e-6)
+    for unasked, said in (((dried,), ["stricter: 90 µm if water dries on it"]), ((), [])):
+        (legend,) = ladder(answered(unasked=unasked)).legends
+        assert [text.get_text() for text in legend.get_texts() if "stricter" in text.get_text()] == said
+
+
 def test_the_axis_of_a_force_begins_at_zero_and_fractions_are_in_words():
     force, length = risk({"S1": answered(unit="N"), "C1": answered()}).axes
     assert (force.get_xlim()[0], length.get_xlim()[0]) == pytest.approx((0, 1e6 * SIZES[0]))

@@ -263,7 +263,7 @@ def test_many_warnings_leave_the_panels_their_place_and_keep_their_numbers(found
     warned = {(*case, EITHER): [noted(f"{case} is too wet.")] for case in cases}
     figure = figures_devices.simulated(cases, warned)
     assert len(figure.axes) == 20
-    assert figure._supxlabel.get_text() == "(1) to (120): beyond a limit of the model"
+    assert figure._supxlabel.get_text() == "(1) to (120): note (either side)"
     assert figure.axes[0].get_legend().get_texts()[1].get_text() == "RH 0.5 (2)"
     assert "(2) surface B2: ('C0', 0.5) is too wet." in tables_devices.safe_lengths(cases, warned).caption
     assert figure.get_figheight() <= 24
@@ -285,8 +285,16 @@ def named(figure):
 
 
 def beside(panel):
-    """Names of the curves of a panel, from below."""
-    return [text.get_text() for text in sorted(panel.texts, key=lambda text: text.xy[1])]
+    """Names of the curves beside a panel, from below."""
+    outside = [text for text in panel.texts if text.xycoords == "axes fraction"]
+    return [text.get_text() for text in sorted(outside, key=lambda text: text.xy[1])]
+
+
+def test_flat_surfaces_are_named_at_the_first_point_of_the_longest_ones_unless_it_is_not_known():
+    name = next(text for text in charts()[1][20, S_SHAPE].texts if text.get_text() == "flat surfaces")
+    assert name.xy == pytest.approx((0.4, 56))
+    unknown = {case: one.assign(flooded_length=one.flooded_length * np.nan) for case, one in NINE.items()}
+    assert not any(text.get_text() == "flat surfaces" for text in figures_devices.chart(unknown, {}).axes[0].texts)
 
 
 def test_the_chart_shows_the_limit_of_saturated_air_of_its_shape():
@@ -311,10 +319,9 @@ def test_a_chart_explains_its_lines_once_below_all_panels():
     figure, panels = charts()
     assert named(figure) == [
         "1 in 1000 stick by beam or tip",
-        "flat surfaces, beam or tip",
         "1 in 1000 stick by beam",
-        "flat surfaces, beam",
         "by a power law, ± 0.4 %",
+        "axes of panels differ",
     ]
     assert all(panel.get_legend() is None for panel in panels.values())
 
@@ -323,7 +330,8 @@ def test_names_of_close_curves_are_apart_and_a_curve_without_a_length_has_none()
     close = {case: one.copy() for case, one in NINE.items()}
     for one in close.values():
         one["safe_length"] = one.safe_length.isel(thickness=0, drop=True) * xr.DataArray([1, 1.001], dims="thickness")
-    low, high = (text.xy[1] for text in figures_devices.chart(close, {}).axes[0].texts)
+    texts = figures_devices.chart(close, {}).axes[0].texts
+    low, high = (text.xy[1] for text in texts if text.xycoords == "axes fraction")
     assert high - low == pytest.approx(0.05)
     for one in close.values():
         one["safe_length"] = one.safe_length * xr.DataArray([1, np.nan], dims="thickness")
@@ -335,7 +343,7 @@ def test_the_chart_has_numbers_of_warnings_beside_the_thickness():
     assert beside(panels[20, S_SHAPE]) == ["2 µm thick (1)", "3 µm thick"]
     assert beside(panels[20, EITHER]) == ["2 µm thick (1) (2)", "3 µm thick"]
     assert beside(panels[10, EITHER]) == ["2 µm thick", "3 µm thick"]
-    assert figure._supxlabel.get_text() == "(1) to (2): beyond a limit of the model"
+    assert figure._supxlabel.get_text() == "(1) to (2): note (either side)"
 
 
 @pytest.mark.slow

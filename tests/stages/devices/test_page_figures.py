@@ -11,6 +11,7 @@ from matplotlib.text import Text
 from PIL import Image
 from test_stage_life import OF
 
+from stiction.answer.data import Between
 from stiction.report.axes import figures as of_axes
 from stiction.report.budget import figures as of_budgets
 from stiction.report.devices import figures as of_devices
@@ -66,6 +67,16 @@ def test_the_legend_of_a_life_names_what_is_drawn_alone(build, short):
     assert "stick: whether it then sticks" in names, "a limit that is too short keeps the colour of its question"
     red = [text for panel in figure.axes for text in panel.texts if text.get_color() == life._SHORT]
     assert bool(red) == short
+
+
+@pytest.mark.parametrize(("size", "said"), [(90e-6, ["90"]), (100.2e-6, [])])
+def test_a_life_has_a_stricter_size_between_airs_in_red_unless_it_reads_as_the_size_to_build(size, said):
+    answers = layout(beam_answers({0.67: safe()}, {}, OF), OF)
+    figure = life.figure({"C1": answers}, {"C1": 100e-6}, {"C1": Between(0.83, size, size)})
+    red = [text.get_text() for text in figure.axes[0].texts if text.get_color() == life._SHORT]
+    rows = [label.get_text().replace("\n", " ") for label in figure.axes[0].get_yticklabels()]
+    assert red == said
+    assert ("length to build at RH 0.83, between stated airs, interpolated" in rows) == bool(said)
 
 
 @styled

@@ -45,7 +45,8 @@ _STUCK, _LOWEST = "P(stuck) [–]", 1 / 30
 _WIDE = 26
 #: Colour and marker of sizes that are stricter than the size to build.
 _STRICTER = {"color": "black", "marker": "v", "linestyle": "", "markersize": 6}
-#: Most characters of a line above one of three panels.
+_IN_TITLES = "stricter sizes, in the titles"
+#: Most characters of a line above one of three panels, and of a line of its legend.
 _LINE = 38
 #: Place of the label of a fraction.
 _LABEL = {"xycoords": ("axes fraction", "data"), "va": "bottom", "fontsize": 7, "path_effects": OUTLINED}
@@ -56,7 +57,7 @@ def ladder(answer: Answer) -> Figure:
     """Draw the steps from the estimate to the size to build that are known, one row each, and beside them P(stuck)."""
     figure, grid = panels(1, 2, (2 * SINGLE, _AROUND + _ROW * len(answer.known_steps)))
     _steps(grid[0, 0], answer)
-    _stuck(grid[0, 1], answer)
+    _stuck(grid[0, 1], answer, stricter=textwrap.fill(f"stricter: {'; '.join(words.stricter(answer))}", _LINE))
     grid[0, 1].set_ylabel(_STUCK)
     _explain(figure, [grid[0, 1]])
     return figure
@@ -133,8 +134,11 @@ def _wrapped(line):
     return textwrap.wrap(line.replace("RH ", "RH\N{NO-BREAK SPACE}"), fitting)
 
 
-def _stuck(panel: Axes, answer):
-    """Expected P(stuck) in all stated airs with its band, dashed in each of the others, and the size to build."""
+def _stuck(panel: Axes, answer, stricter=_IN_TITLES):
+    """Expected P(stuck) in all stated airs with its band, dashed in each of the others, and the size to build.
+
+    Sizes that are ``stricter`` are named in the legend.
+    """
     scale, label = _axis(answer)
     panel.set_xlabel(label)
     if words.is_forbidden(answer) or not answer.sizes.size:
@@ -158,20 +162,20 @@ def _stuck(panel: Axes, answer):
         at, side = (0.01, "left") if answer.sought.more_is_better else (0.99, "right")  # clear of marks
         panel.annotate("allowed", (at, answer.share), ha=side, **_LABEL)
     _size_to_build(panel, answer, scale)
-    stricter = _stricter(panel, answer, scale)
+    beside = _stricter(panel, answer, scale, stricter)
     lowest = _LOWEST * np.nan_to_num(answer.share, nan=UNLIKELY)
-    left = 0 if answer.sought.more_is_better else min([sizes.min(), *(0.98 * size for size in stricter)])
-    panel.set(yscale="log", xlim=(left, max([sizes.max(), *(1.02 * size for size in stricter)])), ylim=(lowest, 1.3))
+    left = 0 if answer.sought.more_is_better else min([sizes.min(), *(0.98 * size for size in beside)])
+    panel.set(yscale="log", xlim=(left, max([sizes.max(), *(1.02 * size for size in beside)])), ylim=(lowest, 1.3))
     panel.yaxis.set_major_formatter(lambda share, _: "all" if share == 1 else one_in(share))
 
 
-def _stricter(panel, answer, scale):
+def _stricter(panel, answer, scale, label):
     """Marks of the sizes that are stricter than the size to build, at the allowed fraction; these sizes."""
     beside = [one.size for one in (answer.between, *answer.unasked) if one]
     build = safe_size(answer.build, answer.sought)
     sizes = [size / scale for size in beside if safe_size(size, answer.sought) != build]  # as they are stated
     if sizes:
-        panel.plot(sizes, [answer.share] * len(sizes), **_STRICTER, label="stricter sizes, in the titles")
+        panel.plot(sizes, [answer.share] * len(sizes), **_STRICTER, label=label)
     return sizes
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from stiction.answer.data import Answer, Cause, Probability
+from stiction.answer.data import Answer, Between, Cause, Probability
 from stiction.answer.sought import LENGTH
 from stiction.contact.air import Air
 from stiction.plan.names import by_name
@@ -172,10 +172,16 @@ def steps(answer: Answer) -> pd.DataFrame:
     )
 
 
-def builds(datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, str]) -> dict[str, float]:
-    """Sizes to build by device [m or N], NaN where none is stated. Parameters as of `of_datasets`."""
+def builds(
+    datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, str]
+) -> tuple[dict[str, float], dict[str, Between | None]]:
+    """Sizes to build by device [m or N], NaN where none is stated, and stricter ones between airs, if any.
+
+    Parameters as of `of_datasets`.
+    """
     answers = of_datasets(datasets, warnings)
-    return {name: np.nan if answer.forbidden else answer.build for name, answer in answers.items()}
+    sizes = {name: np.nan if answer.forbidden else answer.build for name, answer in answers.items()}
+    return sizes, {name: None if answer.forbidden else answer.between for name, answer in answers.items()}
 
 
 def of_datasets(answers: Mapping[str, xr.Dataset], warnings: Mapping[str, str]) -> dict[str, Answer]:

@@ -213,7 +213,7 @@ def decides(answer: Answer) -> str:
     last, largest = answer.stated_steps[-1], answer.largest_step
     held = END_STATES[last.shape].by if last.shape in END_STATES else "liquid that dries"
     held = "tip" if answer.is_by_tip else held
-    stuck = "" if answer.sought is FORCE else f", stuck by {'the ' if held != 'beam or tip' else ''}{held}"
+    stuck = "" if answer.sought.more_is_better else f", stuck by {'the ' if held != 'beam or tip' else ''}{held}"
     sentence = f"{_air(answer, last.humidity)}{_among_airs(answer)}{stuck}."
     if answer.between and _is_stricter(answer, answer.between.size):
         sentence += f" Between them, RH {answer.between.humidity:.2g} is worse."

@@ -166,8 +166,8 @@ def _legend_above(figure, axes):
     """Legend of all panels, with as many columns as fit across the figure."""
     entries, labels = handles(*axes.flat)
     if any(text.get_text().endswith("%") for panel in axes.flat for text in panel.texts):
-        entries.append(Line2D([], [], color="black", linestyle="", marker=r"$\%$", markersize=6))
-        labels.append("share of S-shapes, if below 100 %")
+        entries.append(Line2D([], [], linestyle=""))
+        labels.append("58 %: share of S-shapes, if not all")
     style = {"loc": "outside upper center", "columnspacing": 1.2}
     for columns in (5, 4, 3, 2, 1):
         legend = figure.legend(entries, labels, ncols=columns, **style)
@@ -240,7 +240,7 @@ def _draw_measured(panel, published, beam, models):
         published.experiment.to_numpy() / TO_UM, published.experiment_std.to_numpy() / TO_UM, beam
     )
     style = {"fmt": "D", "color": "black", "markersize": 3, "zorder": 5}
-    panel.errorbar(humidity, TO_MJ * energy, TO_MJ * bars, label="measured", **style)
+    panel.errorbar(humidity, TO_MJ * energy, TO_MJ * bars, label="measured, mean ± std", **style)
     for model in {"NG", "GEO"}.intersection(models):
         energy = apparent_adhesion_energy(published[model.lower()].to_numpy() / TO_UM, beam)
         style = {"fmt": _MARKERS[model][0], "fillstyle": "none", "color": PUBLISHED, "zorder": 4}
@@ -291,18 +291,19 @@ def _energies(beams):
 def _labels(panel, released, model, weakest):
     """Annotate shares of S-shaped beams below 100 %.
 
-    Beams of which none is S-shaped get a smaller marker at the energy of the longest crack [mJ m⁻²].
+    Beams of which none is S-shaped get a smaller marker at the energy of the longest crack [mJ m⁻²], and a label below.
     """
-    style = {"fontsize": 7, "ha": "center", "path_effects": OUTLINED, "zorder": 6}
+    style = {"fontsize": 7, "ha": "left", "path_effects": OUTLINED, "zorder": 6, "textcoords": "offset points"}
     for humidity, share in _shares(released, model):
         if share < 1:
             energies = _energies(released[humidity, model])
-            height = energies.mean() if len(energies) else weakest
-            if not len(energies):
+            height, below = (energies.mean(), False) if len(energies) else (weakest, True)
+            if below:
                 marker, colour = _MARKERS[model]
                 small = {"markersize": 3, "color": colour, "zorder": 3, "transform": _aside(panel, -_ASIDE)}
                 panel.plot(humidity, height, marker, **small)
-            panel.annotate(_percent(share), (humidity, height), (-_ASIDE, 4), textcoords="offset points", **style)
+            away = {"xytext": (-2 * _ASIDE, -4 if below else 4), "va": "top" if below else "bottom"}
+            panel.annotate(_percent(share), (humidity, height), **away, **style)
 
 
 def _percent(share):

@@ -215,10 +215,11 @@ def changes_drawn(frame: pd.DataFrame, full: Mapping[str, tuple[float, float]], 
         base = of_pair.iloc[0]
         reference = rows_of(published, pair=pair, relative_humidity=base.relative_humidity)
         length = base.crack_length_um / (1 + base.change_percent / 100)
-        dots.references(panel, length, f"base: {_label(base)}", reference)
+        of_base = f"base: {_label(base)}, energies of {base.strips} strips"
+        dots.references(panel, length, of_base, reference)
         change, error = full[pair]
         of_full_contact = dots.Mark(change, change, "black", dots.signed(change), error, "full elastic contact")
-        attraction = choice_label(f"van_der_waals_{base.vdw}").removeprefix("van der Waals ")
+        attraction = choice_label(f"van_der_waals_{base.vdw}").removeprefix("van der Waals ") + " [%]"
         dots.draw(panel, _readings(of_pair) | {"full contact": [of_full_contact]}, column=attraction)
         panel.xaxis.set_major_locator(MaxNLocator(3))
         panel.set_xlabel("change of $l_s$ [%]")

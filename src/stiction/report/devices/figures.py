@@ -1,5 +1,6 @@
 """Figures of devices: share of stuck beams over their length, safe length over the relative humidity."""
 
+import textwrap
 from collections.abc import Iterable, Mapping
 from itertools import product
 from typing import Any
@@ -20,9 +21,10 @@ from stiction.plan.names import by_name
 from stiction.report.answer.tables import of_datasets
 from stiction.report.answer.words import is_forbidden
 from stiction.report.format import TO_UM, UM, fraction_with_band, safe_size
-from stiction.report.limits.words import numbered, with_numbers
+from stiction.report.limits.words import distinct, in_short, numbered, with_numbers
 from stiction.report.style import (
     BUILD,
+    OUTLINED,
     SINGLE,
     at_most_double,
     columns_of_panels,
@@ -48,6 +50,8 @@ from stiction.stages.devices.end_states import END_STATES
 _BASES = {"sampled": "o", "fitted": "s", "extrapolated": "x", "longest": ">", "flat": "|"}
 #: Height of a line of panels, and of an entry of the legends below them [in].
 _PANEL, _ENTRY = 3.3, 0.12
+#: Mean width of a character below a figure [in].
+_CHARACTER = 0.05
 #: Points of a curve between computed humidities.
 _POINTS = 200
 #: Space above the longest curve of a chart, in units of the range of its lengths.
@@ -61,8 +65,8 @@ def refer_to_warnings(figure: Figure, warnings: Mapping[Any, list[Limit]], *, ab
     if sentences := with_numbers(warnings):
         numbers = "(1)" if len(sentences) == 1 else f"(1) to ({len(sentences)})"
         figure.set_label("\n".join(["Warnings:", *sentences]))
-        say = figure.suptitle if above else figure.supxlabel
-        say(f"{numbers}: beyond a limit of the model", fontsize=7, ha="left", x=0.01)
+        say, fitting = figure.suptitle if above else figure.supxlabel, int(figure.get_figwidth() / _CHARACTER)
+        say(textwrap.fill(f"{numbers}: {in_short(distinct(warnings))}", fitting), fontsize=7, ha="left", x=0.01)
 
 
 @styled
@@ -179,8 +183,11 @@ def chart(
         if shape == wholes[name]["shape"].values[-1] and np.isclose(gap, own_gap, rtol=1e-6, atol=0):
             _mark_size_to_build(panel, name, answer, placed[name])
         low, high = panel.dataLim.intervaly
-        label = on_own_axes("simulated limit [µm]", columns.T)
-        panel.set(xlabel="relative humidity [–]", ylabel=label, ylim=(0.95 * low, high + _ROOM * (high - low)))
+        panel.set(
+            xlabel="relative humidity [–]",
+            ylabel="simulated limit [µm]",
+            ylim=(0.95 * low, high + _ROOM * (high - low)),
+        )
         humidity_axis(panel, placed[name])
         marks = [
             _marks_of_warnings(numbers.get((name, thickness, gap, shape), ())) for thickness in curves.thickness.values
@@ -188,6 +195,8 @@ def chart(
         _name_thicknesses(panel, curves, marks)
     letter_lines(lines, [f"{name}, gap {TO_UM * gap:g} µm, {END_STATES[shape].by}" for name, gap, shape in subjects])
     shown = sorted(zip(*handles(*columns[:, 0]), strict=True), key=lambda entry: isinstance(entry[0], PolyCollection))
+    if len(subjects) > 1:
+        shown.append((Line2D([], [], linestyle=""), "axes of panels differ"))
     legend_outside(figure, tuple(zip(*shown, strict=True)), "lower", 2)
     refer_to_warnings(figure, warnings, above=is_page())  # clear of the legend
     return figure
@@ -225,13 +234,21 @@ def _thicknesses(panel, curves, shape, placed):
             panel.plot(np.array(at)[~by_law], lengths[~by_law], ".", color=shade)
             panel.plot(*_curve(at, TO_UM * line_part.flooded_length.values), styles[1], color=shade, linewidth=0.8)
     _explain_chart(panel, curves.sel(share=share), shape)
+    _name_flat_surfaces(panel, TO_UM * curves.flooded_length)
+
+
+def _name_flat_surfaces(panel, lengths):
+    """Name the bounds of flat surfaces [µm] at the left end of the longest ones that are known."""
+    first = lengths.isel(relative_humidity=0)
+    if np.isfinite(first).any():
+        style = {"textcoords": "offset points", "fontsize": 7, "va": "bottom", "path_effects": OUTLINED}
+        panel.annotate("flat surfaces", (panel.dataLim.x0, float(first.max())), (2, 1), **style)
 
 
 def _explain_chart(panel, curves, shape):
     """Add what lines and markers of one share are to the legend of a panel."""
-    (line, dotted), by = END_STATES[shape].lines, END_STATES[shape].by
+    line, by = END_STATES[shape].lines[0], END_STATES[shape].by
     panel.plot([], [], line, color="0.3", marker=".", label=f"{one_in(float(curves.share))} stick by {by}")
-    panel.plot([], [], dotted, color="0.3", linewidth=0.8, label=f"flat surfaces, {by}")
     if not curves.by_elements.all():
         label = f"by a power law, ± {in_percent(float(curves.power_law_error.max()))}"
         panel.plot([], [], "o", color="0.3", fillstyle="none", label=label)

@@ -8,7 +8,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from stiction.answer.data import Answer
+from stiction.answer.data import Answer, Between
 from stiction.answer.sought import FORCE, LENGTH, SOUGHT
 from stiction.config.units import from_si
 from stiction.constants import FREE_FALL
@@ -350,14 +350,20 @@ def _ends(answer):
 
 
 @styled
-def figure(life: Mapping[str, xr.Dataset], builds: Mapping[str, float]) -> Figure:
+def figure(
+    life: Mapping[str, xr.Dataset], builds: Mapping[str, float], betweens: Mapping[str, Between | None] | None = None
+) -> Figure:
     """Limits of the lives of devices as dot plots: lengths of beams, or forces of stoppers, a panel for each device.
 
-    Sizes to build are by device [m or N]. Red numbers: less than that.
+    Sizes to build are by device [m or N], as are stricter ones between stated airs. Red numbers: stricter than that.
     """
     answers = {name: _rows(dataset) for name, dataset in life.items()}
     widest = int(_LABELS * page_width(DOUBLE) / _CHARACTER)
-    rows = {name: _marks(rows_of_device, builds[name], widest) for name, rows_of_device in answers.items()}
+    rows = {
+        name: _marks(rows_of_device, builds[name], widest)
+        | _mark_between((betweens or {}).get(name), builds[name], _sought(life[name]), widest)
+        for name, rows_of_device in answers.items()
+    }
     heights = [dots.height(labels) for labels in rows.values()]
     size = DOUBLE, min(sum(heights) + _LEGEND, _TALLEST)
     figure_of_lives, axes = panels(len(rows), 1, size, height_ratios=heights)
@@ -403,6 +409,17 @@ def _marks(answers, build, widest):
     return rows
 
 
+def _mark_between(between, build, sought, widest):
+    """Row of the size to build between the stated airs by its label, none if it reads as the size to build."""
+    if between is None or safe_size(between.size, sought) == safe_size(build, sought):
+        return {}
+    size, text = between.size / sought.scale, bounding(between.size / sought.scale, 3, up=sought.more_is_better)
+    label = f"{sought.label} to build at RH {between.humidity:.2g}, between stated airs, interpolated"
+    return {
+        textwrap.fill(label, widest): [dots.Mark(size, size, _COLOURS[STICK], text, filled=False, text_color=_SHORT)]
+    }
+
+
 def _label(answer):
     """What an answer is about, in short."""
     return answer.what.partition(":")[0]
@@ -434,7 +451,7 @@ STAGES = (
         "life",
         "what limits the life of devices, on one axis",
         "Devices",
-        compute=lambda data: figure(data["life"], tables.builds(data["answers"], data["warnings"])),
+        compute=lambda data: figure(data["life"], *tables.builds(data["answers"], data["warnings"])),
         **_OF_ALL | {"inputs": _inputs_of_figure},
     ),
 )

@@ -6,13 +6,15 @@ Nothing is decided here: sides and amounts are fields of the limits.
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
 from stiction.beam.foundation import ACCURACY, LONGER, TOO_EARLY
 from stiction.constants import WATER_MOLECULE
 from stiction.contact.air import DRY_AIR, has_dry, humid
 from stiction.contact.full.smooth_pairs import largest_shortfall
 from stiction.contact.materials import COATING_ATTRACTION
 from stiction.contact.meniscus import MOLECULES as LIQUID
-from stiction.devices.limits.limit import Limit
+from stiction.devices.limits.limit import Limit, Side
 from stiction.devices.limits.rules import FILMS, MOLECULES, OF_SLOPE, PLASTIC, PLATE, RIM, ROTATION, SLENDER, STEEPEST
 from stiction.report.format import TO_MPA, TO_NM, TO_UM, airs, bounding, listed, with_error
 from stiction.rounding import in_percent
@@ -38,6 +40,31 @@ def texts(limits: Iterable[Limit]) -> list[str]:
 def joined(limits: Iterable[Limit]) -> str:
     """Sentences on limits of one point as one, empty without any."""
     return "; ".join(texts(limits))
+
+
+#: Names of kinds that their keys do not say, and sides of results, in short.
+_NAMES = {"large_rotation": f"slope above {ROTATION}"}
+_ON_SIDE = {Side.SAFE: "safe side", Side.UNSAFE: "unsafe side", Side.EITHER: "either side"}
+
+
+def in_short(limits: Iterable[Limit]) -> str:
+    """Names of limits, each once with the side on which results err and, where it is known, by how much at most.
+
+    Examples
+    --------
+    >>> in_short([Limit("large_rotation", Side.SAFE, False, amount) for amount in (0.002, 0.001)])
+    'slope above 0.1 (safe side, by up to 0.2 %)'
+    >>> in_short([Limit("thin_film", Side.EITHER, False)])
+    'thin film (either side)'
+    """
+    amounts: dict = {}
+    for limit in limits:
+        amounts.setdefault((_NAMES.get(limit.kind, limit.kind.replace("_", " ")), limit.side), []).append(limit.amount)
+    most = {named: max(map(abs, each)) if np.isfinite(each).all() else np.nan for named, each in amounts.items()}
+    return "; ".join(
+        f"{name} ({_ON_SIDE[side]}{f', by up to {in_percent(amount)}' * bool(np.isfinite(amount))})"
+        for (name, side), amount in most.items()
+    )
 
 
 # Strips and lengths
@@ -301,8 +328,8 @@ SENTENCES: dict[str, Callable[..., str]] = {
         f"rough surfaces they are too large, on smooth ones with gentle slopes too small, by up to "
         f"{in_percent(largest_shortfall())}."
     ),
-    "few_strips": lambda share: (
-        f"One strip of surface makes {in_percent(share)} of the squared error of full elastic contact. Others like it "
+    "few_strips": lambda part: (
+        f"One strip of surface makes {in_percent(part)} of the squared error of full elastic contact. Others like it "
         "can be missing, so that the change and its error are themselves hardly known."
     ),
     # Water

@@ -31,6 +31,7 @@ from stiction.report.style import (
     figure_stage,
     handles,
     humidity_axis,
+    legend_below,
     legend_outside,
     legends,
     letter,
@@ -47,8 +48,10 @@ from stiction.stages.laws.stored_model import chaos_model
 _ZERO = {"color": "0.6", "linewidth": 0.6, "zorder": 0}
 #: Difference of Γ from ē [%] that the paper states for its elements.
 _PAPER_ERROR = 2.5
-#: End of the axis of the errors of meshes over their largest, with room for a legend.
-_HEADROOM = 30
+#: End of the axis of the errors of meshes over their largest.
+_HEADROOM = 2
+#: Largest autocorrelation beyond the correlation length, as `stiction.surface.spectrum.correlation_length` has it.
+_UNCORRELATED = 0.01
 #: Number of summits per cell that is drawn in white; a single summit is a little darker.
 _FAINTEST = 0.3
 _BOUND = {"color": "0.4", "linestyle": ":"}
@@ -285,7 +288,8 @@ def mesh_convergence(mesh: xr.Dataset, correlation: xr.Dataset) -> Figure:
     for k, (surface, length) in enumerate(zip(correlation.surface.values, lengths, strict=True)):
         curve = correlation.autocorrelation.sel(surface=surface)
         axes[2].plot(TO_UM * correlation.lag, curve, linestyle=dashes(k), label=f"{surface}: $l^m$ = {length:.2f} µm")
-    axes[2].axhspan(-0.01, 0.01, color="0.85", zorder=0)
+    label = rf"all beyond $l^m$: ± {_UNCORRELATED:g}"
+    axes[2].axhspan(-_UNCORRELATED, _UNCORRELATED, color="0.85", zorder=0, label=label)
     axes[2].set(xlabel=r"distance $\tau$ [µm]", ylabel=r"$r_Z / m_2$ [–]", xlim=(0, TO_UM * float(correlation.lag[-1])))
     legends(figure, {axes[2]: {}})
     letter(axes, ["force law of a strip", "convergence of the mesh", "autocorrelation"])
@@ -308,7 +312,7 @@ def _ground(panel, mesh):
 def _meshes(panel, mesh):
     """Relative difference of Γ under every mesh from ē, beside the one stated in the paper."""
     excess = 100 * (mesh.energy.values / float(forcelaw.energy(mesh.law.values)) - 1)
-    panel.axhspan(-_PAPER_ERROR, _PAPER_ERROR, color="0.92", zorder=0, label=f"± {_PAPER_ERROR} %, paper: linear scale")
+    panel.axhspan(-_PAPER_ERROR, _PAPER_ERROR, color="0.92", zorder=0, label=f"paper's {_PAPER_ERROR} %")
     points = np.unique(mesh.point_distance.values)[::-1]
     for k, (point, shade) in enumerate(zip(points, shades(len(points)), strict=True)):
         chosen = mesh.point_distance.values == point
@@ -327,7 +331,8 @@ def _meshes(panel, mesh):
     # Set limits: a beam that does not stick under this law has no points.
     panel.set_xlim(TO_UM * mesh.element_length.values.min() / 1.2, 1.2 * TO_UM * mesh.element_length.values.max())
     plain_log(panel.xaxis)
-    panel.legend(loc="upper left")
+    entries = [*handles(panel)[0], Line2D([], [], linestyle="", label=f"axis linear below {_PAPER_ERROR} %")]
+    legend_below(panel, entries)
 
 
 # Model choices
@@ -341,15 +346,16 @@ def variants(datasets: Mapping[tuple[str, str], xr.Dataset], published: pd.DataF
     Table III has the rows of the paper's own pairs.
     """
     pairs, names = (list(dict.fromkeys(parts)) for parts in zip(*datasets, strict=True))
-    height = dots.AROUND + _LEGEND + dots.ROW * len(names)
+    height = dots.AROUND + _LEGEND + dots.ROW * (1 + len(names))
     figure, columns, lines = columns_of_panels(len(pairs), 1, at_most_double(1.3 * SINGLE), height, sharey=True)
     titles = []
     for (panel,), pair in zip(columns, pairs, strict=True):
         humidity, base = next(cases_of(datasets[pair, "base"]))
         cases = {name: next(cases_of(datasets[pair, name]))[1] for name in names if name != "base"}
         length = TO_UM * comparison.mean_crack_length(base)[0]
-        dots.references(panel, length, "base", rows(published, pair=pair, relative_humidity=humidity))
-        dots.draw(panel, {variant_label(name): [_shift(case, base)] for name, case in cases.items()}, column="")
+        of_base = f"base: beams on {len(base.energy)} samples"
+        dots.references(panel, length, of_base, rows(published, pair=pair, relative_humidity=humidity))
+        dots.draw(panel, {variant_label(name): [_shift(case, base)] for name, case in cases.items()}, column="[%]")
         panel.set_xlabel("change of $l_s$ [%]")
         titles.append(f"pair {pair}, {Air(humidity).words}")
     letter_lines(lines, titles)
