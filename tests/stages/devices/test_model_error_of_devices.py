@@ -132,7 +132,8 @@ def test_sentences_say_what_full_contact_leaves_out_and_whether_it_has_been_appl
     assert "is in neither model" in plain
     assert "ttraction across gaps" not in across, "a designer asks for what is left out"
     assert "It is not known at a relative humidity of 0.67." in plain
-    assert "has changed the lengths" in applied
+    assert "Full elastic contact of the surfaces, inside, has changed the lengths" in applied
+    assert "Full elastic contact of the surfaces, not inside, would change the lengths" in plain
     assert "safe side" not in applied
     unknown = model_errors.sentences("D", {"D": error((FORCE,), [np.nan, np.nan])})
     assert "is not known at relative humidities of 0.44, 0.67, beyond the humidities of the pair." in unknown[0]

@@ -14,6 +14,9 @@ from stiction.rounding import in_percent
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.opening import EITHER, SOUGHT_BY
 
+#: Subject of sentences.
+_FULL_CONTACT = "Full elastic contact of the surfaces"
+
 
 def device_change(errors: Mapping[str, xr.Dataset] | None, device: str, humidity: float, shape: str) -> dict[str, Any]:
     """Change of a device by full contact, in an end state, or nothing without datasets of stage device_model_error."""
@@ -38,9 +41,10 @@ def sentences(device: str, errors: Mapping[str, xr.Dataset] | None) -> list[str]
         return [f"The model's error in the {response} is not known {airs(rows)}{_why(error)}."]
     applied = set(error.humidity.values[error.applied.values])
     texts, uncorrected = [], {humidity: row for humidity, row in finite.items() if humidity not in applied}
-    for does, humidities in ("has changed", applied & finite.keys()), ("would change", uncorrected):
+    inside, beside = (f"{_FULL_CONTACT}, inside, has changed", f"{_FULL_CONTACT}, not inside, would change")
+    for does, humidities in (inside, applied & finite.keys()), (beside, uncorrected):
         by = [f"{_percent(finite[humidity])} {airs([humidity])}" for humidity in sorted(humidities)]
-        texts += [f"Full elastic contact of the surfaces {does} the {response} by {', '.join(by)}."] if by else []
+        texts += [f"{does} the {response} by {', '.join(by)}."] if by else []
     if len(finite) < len(rows):
         texts.append(f"It is not known {airs([humidity for humidity in rows if humidity not in finite])}.")
     if EITHER in error["shape"]:
