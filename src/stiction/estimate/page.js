@@ -62,7 +62,7 @@ function questionOf({own, kind, like, substrate, value, open}) {
 }
 const RAREST = 1e-6, NEARLY_ALL = 0.99; // fractions that are shown
 const WORDS = {[CANTILEVER]: ["length", "µm", "length_um"], [BRIDGE]: ["length", "µm", "length_um"], [STOPPER]: ["force", "µN", "force_uN"]};
-const grouped = (number) => number < 10000 ? `${number}` : `${number}`.replace(/(?=(\d{3})+$)/g, "\u00a0");
+const grouped = (number) => number < 10000 ? `${number}` : `${number}`.replace(/\B(?=(\d{3})+$)/g, "\u00a0");
 const micro = (size) => Number((size * 1e6).toPrecision(3)).toString();
 function percent(part, touchdowns) {
   if (part < RAREST) return `less than ${(100 * RAREST).toFixed(4)} %`;
