@@ -62,6 +62,7 @@ function questionOf({own, kind, like, substrate, value, open}) {
 }
 const RAREST = 1e-6, NEARLY_ALL = 0.99; // fractions that are shown
 const WORDS = {[CANTILEVER]: ["length", "µm", "length_um"], [BRIDGE]: ["length", "µm", "length_um"], [STOPPER]: ["force", "µN", "force_uN"]};
+const grouped = (number) => number < 10000 ? `${number}` : `${number}`.replace(/\B(?=(\d{3})+$)/g, "\u00a0");
 const micro = (size) => Number((size * 1e6).toPrecision(3)).toString();
 function percent(part, touchdowns) {
   if (part < RAREST) return `less than ${(100 * RAREST).toFixed(4)} %`;
@@ -83,7 +84,7 @@ function show() {
 }
 function write(found, {kind, value}) {
   const [name, symbol, key] = WORDS[kind];
-  const row = ({fraction, size, intervals}) => `<tr><th scope="row">1 in ${Math.round(1 / fraction)}</th><td>${micro(size)}</td>` +
+  const row = ({fraction, size, intervals}) => `<tr><th scope="row">1 in ${grouped(Math.round(1 / fraction))}</th><td>${micro(size)}</td>` +
     ["90", "95"].map((key) => `<td>${intervals[key].map(micro).join(" to ")}</td>`).join("") + "</tr>";
   const caption = `<caption>${name === "length" ? "Length" : "Force"} at which a fraction sticks [${symbol}]</caption>`;
   byId("table").innerHTML = `${caption}<thead><tr><th scope="col">stuck</th><th scope="col">${name}</th><th scope="col">90 %</th>` +
