@@ -4,7 +4,7 @@ from pathlib import Path
 import pytest
 
 import stiction
-from stiction.rounding import in_percent, is_multiple
+from stiction.rounding import grouped, in_percent, is_multiple
 
 
 @pytest.mark.parametrize(("whole", "part"), [(0.3, 0.1), (1500e-6, 7.5e-6), (1.0, 1.0)])
@@ -23,6 +23,16 @@ def test_percentages_have_two_digits_or_more_and_no_power_of_ten(share):
     assert unit == "%"
     assert "e" not in number
     assert float(number) == pytest.approx(100 * share, rel=0.05)
+
+
+def test_thousands_are_in_groups_from_five_digits_on():
+    assert [grouped(number) for number in (1, 1000, 9999, 10_000, 123456.7)] == [
+        "1",
+        "1000",
+        "9999",
+        "10 000",
+        "123 457",
+    ]
 
 
 def test_sentences_state_no_percentage_by_two_digits_alone():

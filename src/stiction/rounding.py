@@ -4,6 +4,8 @@ import numpy as np
 
 #: Relative error that a number has if it was computed in other units or in another order.
 _ROUNDING = 1e-9
+#: Number from which on the digits of a rounded one are in groups of three.
+_GROUPED = 9999.5
 
 
 def is_multiple(multiple: float, unit: float) -> bool:
@@ -49,3 +51,14 @@ def in_percent(share: float) -> str:
     """
     value = 100 * float(share)
     return f"{value:.2g} %" if abs(value) < 99.5 else f"{value:.0f} %"
+
+
+def grouped(number: float) -> str:
+    """Whole number for sentences, from 10 000 on in groups of three digits.
+
+    Examples
+    --------
+    >>> grouped(9999.4), grouped(9999.5), grouped(1e6)
+    ('9999', '10 000', '1 000 000')
+    """
+    return f"{number:,.0f}".replace(",", " ") if number >= _GROUPED else f"{number:.0f}"

@@ -12,6 +12,7 @@ import numpy as np
 from scipy.special import betainc, betaincinv, ndtr, ndtri
 
 from stiction.devices.tail import FEWEST, TAIL, fit_tail, scaled_errors
+from stiction.rounding import grouped
 
 #: Length behind the end of a crack that a beam needs to stick, in foundation lengths.
 HOLD = 2.0
@@ -261,10 +262,6 @@ def in_order(lengths: np.ndarray, shares: Sequence[float]) -> np.ndarray:
     return np.where(np.isnan(lengths), np.nan, ordered)
 
 
-#: Least number of which the thousands are grouped.
-_GROUPED = 9999.5
-
-
 def one_in(share: float) -> str:
     """Fraction of devices in words.
 
@@ -276,4 +273,4 @@ def one_in(share: float) -> str:
     number = 1 / share
     if abs(number - round(number)) >= 1e-6 * number:
         return f"1 in {number:g}"
-    return f"1 in {number:,.0f}".replace(",", " ") if number >= _GROUPED else f"1 in {number:.0f}"
+    return f"1 in {grouped(number)}"

@@ -10,7 +10,7 @@ from stiction.contact.air import Air
 from stiction.contact.meniscus import ZERO_CELSIUS
 from stiction.devices.risk import one_in
 from stiction.report.format import airs, humidity_text, listed, number, percent_bound, safe_size
-from stiction.rounding import in_percent
+from stiction.rounding import grouped, in_percent
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.life.answers import Name
 
@@ -185,7 +185,7 @@ def _unless(one):
 def promise(answer: Answer) -> str:
     """What the size to build promises."""
     shared = ", shared among its conditions," * bool(answer.stays)
-    after = f" after {answer.touchdowns} touchdowns{shared}" * (answer.touchdowns > 1)
+    after = f" after {grouped(answer.touchdowns)} touchdowns{shared}" * (answer.touchdowns > 1)
     where = airs([air.humidity for air in answer.airs])
     sentence = f"At most {one_in(answer.share)} sticks{after} {where} (95 % confidence, if the model holds)."
     if answer.stuck is None or not answer.is_enough or answer.stuck.value <= answer.share:
@@ -267,7 +267,7 @@ def by_test_beams(answer: Answer) -> list[str]:
 def of_airs(answer: Answer) -> list[dict[str, str]]:
     """Rows of the table of a first screen: size to build and P(stuck) in each stated air alone."""
     rows, sought = [], answer.sought
-    after = f" after {answer.touchdowns} touchdowns" * (answer.touchdowns > 1 and not answer.stays)
+    after = f" after {grouped(answer.touchdowns)} touchdowns" * (answer.touchdowns > 1 and not answer.stays)
     for air in answer.airs:
         row = {"RH": humidity_text(air.humidity)} | _celsius(answer, air)
         row |= {"touchdowns": f"{answer.touchdowns_in(air.humidity):.5g}"} if answer.stays else {}
