@@ -40,7 +40,7 @@ TITLES = (
 )
 #: What markers and dotted lines are in each panel.
 LINES = (
-    ("this model, non-Gaussian", "GW"),
+    ("this model, NG", "GW"),
     ("simulated", "$A^{-1/2}$, independent summits"),
     ("scatter by surfaces", "scatter by dimensions"),
 )

@@ -15,7 +15,8 @@ def run(monkeypatch):
     """Run a study and return its variables."""
     mpl.use("agg")
     monkeypatch.setattr("matplotlib.pyplot.show", lambda: None)
-    yield lambda name: runpy.run_path(str(GALLERY / f"plot_{name}.py"))
+    with mpl.rc_context():
+        yield lambda name: runpy.run_path(str(GALLERY / f"plot_{name}.py"))
     mpl.pyplot.close("all")
 
 

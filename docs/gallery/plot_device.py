@@ -41,6 +41,8 @@ device = stiction.Device.of(config, "C1")
 # Bands contain the true fraction with a confidence of 95 %. The beam may be held by its whole width, or by its tip
 # alone.
 
+plt.rc("font", size=15)
+figure = plt.figure(figsize=(6.4, 5.6), layout="constrained")
 for humidity in (0.44, 0.67):
     lengths = device.safe_lengths(humidity)
     for shape, line in zip(lengths["shape"].values, ("-", "--"), strict=False):
@@ -50,7 +52,7 @@ for humidity in (0.44, 0.67):
         print(f"RH {humidity}, {shape}: simulated limit {limit:.0f} µm, at which at most 1 % stick")
 plt.xlabel("length of the beam [µm]")
 plt.ylabel("P(stuck) [–]")
-plt.legend()
+figure.legend(loc="outside lower center")
 plt.show()
 
 # %%

@@ -56,6 +56,8 @@ print("\n".join(estimate.flags))
 # --------
 # The large scans end at waves of two of their pixels. The small ones show where the roughness ends.
 
+plt.rc("font", size=15)
+figure = plt.figure(figsize=(6.4, 5.6), layout="constrained")
 for label, part in (("large", large), ("large and small", [*large, *small])):
     inspection = stiction.estimate_surface(part, seed=1, model_scans=8).inspection
     inside = inspection.rings.between(inspection.reach.low, inspection.reach.nyquist)
@@ -66,5 +68,5 @@ plt.loglog(1e-6 * wave, 1e36 * spectrum(wave), "k--", label="truth")
 plt.xlabel("wave number [rad/µm]")
 plt.ylabel("spectrum [nm⁴]")
 plt.ylim(1e-4, None)
-plt.legend()
+figure.legend(loc="outside lower center", ncols=2)
 plt.show()

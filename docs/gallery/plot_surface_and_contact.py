@@ -19,11 +19,14 @@ import stiction
 
 density = stiction.maximum_entropy(skewness=-0.76, kurtosis=3.9)
 z = np.linspace(-5, 4, 400)
+plt.rc("font", size=15)
+plt.rc("figure.constrained_layout", use=True)
+figure = plt.figure()
 plt.plot(z, density(z), label="maximum entropy")
 plt.plot(z, np.exp(-(z**2) / 2) / np.sqrt(2 * np.pi), "--", label="Gaussian")
 plt.xlabel("height over rms [–]")
 plt.ylabel("density [–]")
-plt.legend()
+figure.legend(loc="outside lower center", ncols=2)
 plt.show()
 
 # %%
@@ -36,10 +39,10 @@ config = stiction.load({"run": {"pairs": ["b"]}, "contact": {"samples": 200}, "c
 study = stiction.PairStudy.of(config, "b")
 heights = study.surfaces.beam.draw(stiction.stream(1, "gallery"))
 print(f"{heights.shape[0]} x {heights.shape[1]} points, rms {1e9 * heights.std():.2f} nm")
-plt.imshow(1e9 * heights[:, :300].T, origin="lower", extent=[0, 1.5, 0, 3], cmap="RdBu_r")
-plt.colorbar(label="height [nm]")
-plt.xlabel("along the beam [µm]")
-plt.ylabel("across [µm]")
+plt.imshow(1e9 * heights[:, :300], origin="lower", extent=[0, 3, 0, 1.5], cmap="RdBu_r")
+plt.colorbar(label="height [nm]", orientation="horizontal")
+plt.xlabel("across the beam [µm]")
+plt.ylabel("along it [µm]")
 plt.show()
 
 # %%
@@ -48,6 +51,7 @@ plt.show()
 # Every sample, two facing strips, has an adhesion energy: the attractive part of the area under its force curve. It
 # scatters from sample to sample, which is why one device sticks and another one does not.
 
+figure = plt.figure(figsize=(6.4, 5.6))
 for humidity in (0.44, 0.67, 0.92):
     energies = 1e3 * study.energies(humidity)
     error = energies.std(ddof=1) / np.sqrt(len(energies))
@@ -56,5 +60,5 @@ for humidity in (0.44, 0.67, 0.92):
 plt.xlabel("adhesion energy of a sample [mJ/m²]")
 plt.ylabel("samples")
 plt.xscale("log")
-plt.legend()
+figure.legend(loc="outside lower center", ncols=3)
 plt.show()

@@ -311,10 +311,14 @@ def letter(axes: Iterable[Axes], names: Sequence[str] | None = None) -> None:
         panel.set_title(f"{mark}{name}".rstrip(), loc="left")
 
 
-def letter_lines(lines: Sequence[np.ndarray], names: Sequence[str]) -> None:
-    """Title the panels of all lines of `columns_of_panels`, each with the name of its column, but for removed ones."""
+def letter_lines(lines: Sequence[np.ndarray], names: Sequence[str], shown: Sequence[str] = ("",)) -> None:
+    """Title the panels of all lines of `columns_of_panels`, each with the name of its column, but for removed ones.
+
+    What panels of several rows have ``shown`` follows the name.
+    """
     names = iter(names)
-    titles = [name for line in lines for name in list(islice(names, line.shape[1])) * line.shape[0]]
+    columns = [(line, list(islice(names, line.shape[1]))) for line in lines]
+    titles = [f"{name}{shown[k % len(shown)]}" for line, of in columns for k in range(line.shape[0]) for name in of]
     titled = zip(np.concatenate([line.ravel() for line in lines]), titles, strict=True)
     letter(*zip(*((panel, title) for panel, title in titled if panel.figure), strict=True))
 

@@ -169,10 +169,11 @@ def test_bars_of_a_budget_are_shares_of_the_variance_and_total_and_scatter_are_a
     assert_allclose(np.reshape(middles, (2, 2)).mean(axis=1), range(2), atol=1e-12)
     totals = [f"{100 * scale * np.sqrt(heights + thickness):.2g}" for scale in (2, 1)]
     title = " ".join(measured.get_title(loc="left").replace("\u00a0", " ").split())
-    stated = f"total RH 0.44 ± {totals[0]} %, RH 0.67 ± {totals[1]} %"
-    assert title.endswith(f"{stated} devices scatter RH 0.44 ± 1.4 %, RH 0.67 ± 1.4 %")
+    assert title.endswith(f"standard uncertainty ± {totals[0]}, {totals[1]} % devices scatter ± 1.4, 1.4 %")
     (alone,) = (panel for panel in figures_budget.budget({("C1", 0.67): BEAMS["C1", 0.67]}).axes[:1])
-    assert f"total ± {totals[1]} %" in alone.get_title(loc="left").replace("\u00a0", " "), "a single air has no name"
+    assert f"standard uncertainty ± {totals[1]} %" in alone.get_title(loc="left").replace("\u00a0", " "), (
+        "a single air has no name"
+    )
     names, bars = drawn(chosen)
     assert names == ["van der Waals in dry gaps"]
     assert_allclose([bars[0].get_x(), bars[0].get_x() + bars[0].get_width()], [-4.2, 0], atol=1e-12)
@@ -183,13 +184,18 @@ def test_bars_of_a_budget_are_shares_of_the_variance_and_total_and_scatter_are_a
 
 def test_beam_and_tip_have_panels_of_their_own():
     figure = figures_budget.budget(BEAMS | {("C1", rh, "tip"): budget_dataset(0.5, TIPS) for rh in (0.44, 0.67)})
-    titles = [panel.get_title(loc="left").partition("\ntotal")[0].replace("\n", " ") for panel in figure.axes]
+    titles = [panel.get_title(loc="left").partition("\nstandard")[0].replace("\n", " ") for panel in figure.axes]
     assert titles[::2] == [
         "(a) mean length at which beams stick (S-shape)",
         "(c) length that 1 in 1000 tips hold (arc)",
     ]
     (legend,) = figure.legends
-    assert [text.get_text() for text in legend.get_texts()] == ["RH 0.44", "RH 0.67", "± standard error"]
+    assert [text.get_text() for text in legend.get_texts()] == [
+        "RH 0.44",
+        "RH 0.67",
+        "± standard error",
+        "in titles: airs in this order",
+    ]
 
 
 def test_text_of_a_budget_can_be_read_on_a_phone():
@@ -266,7 +272,7 @@ def test_every_panel_has_the_name_of_its_stopper_in_a_figure_that_is_not_too_tal
     datasets = {f"S{k}": stopper_dataset(peak=1 + k) for k in range(count)}
     figure = figures_budget.stoppers(datasets, {name: [noted("Beware.")] for name in datasets})
     forces = [panel for panel in figure.axes if panel.get_xlabel().startswith("relative humidity")]
-    tops = {panel.get_title("left").split()[1]: max(panel.lines[0].get_ydata()) for panel in forces}
+    tops = {panel.get_title("left").split()[1].strip(":"): max(panel.lines[0].get_ydata()) for panel in forces}
     expected = {name: 1e6 * float(dataset.mean_along.max()) for name, dataset in datasets.items()}
     assert tops == pytest.approx(expected)
     assert figure.get_figheight() <= 24
@@ -355,7 +361,13 @@ def test_a_stopper_shows_the_force_to_build_unless_a_limit_forbids_it(is_allowed
     force = safe_size(known.build, known.sought)
     above, below = figures_budget.stoppers({"S1": STOPPERS["S1"]}, {}, {"S1": answer}).axes
     texts = [[text.get_text() for text in panel.get_legend().get_texts()] for panel in (above, below)]
-    assert (f"to build, {force}" in texts[0]) == (f"to build in the stated airs, {force}" in texts[1]) == is_allowed
+    diamonds = [line.get_xydata() for line in below.lines if line.get_marker() == "D"]
+    assert_allclose(diamonds, [[[known.together.humidity, 1e6 * known.build]]] if is_allowed else [])
+    assert [panel.get_title("left") for panel in (above, below)] == [
+        "(a) S1: share stuck",
+        "(b) S1: force against humidity",
+    ]
+    assert (f"to build, {force}" in texts[0]) == (f"to build for all stated airs, {force}" in texts[1]) == is_allowed
     assert "95 % band" in texts[0]
 
 

@@ -21,6 +21,7 @@ from stiction.report import style
 from stiction.report.devices import warnings_page
 from stiction.report.limits import pages
 from stiction.report.limits.words import texts
+from stiction.report.style import on_a_page
 from stiction.report.test_beams import figures as figures_test_beams
 from stiction.report.test_beams import tables as tables_test_beams
 from stiction.run import storage
@@ -716,6 +717,15 @@ def test_the_figure_shows_counts_at_the_lengths_of_their_beams():
     assert labels[-1].startswith("length of counted beams")
     single = figures_test_beams.test_beams(computed([], stuck=counts(as_computed(0.7)[:1], [3], 20, HUMIDITIES[:1])))
     assert single.legends[0].get_texts()[-1].get_text() == labels[-1]
+
+
+def test_every_panel_of_a_page_has_its_own_legend_below_it_and_bands_have_patches():
+    with on_a_page():
+        figure = figures_test_beams.test_beams(computed(as_computed(1.1)))
+    lengths, inputs = ([text.get_text() for text in panel.get_legend().get_texts()] for panel in figure.axes)
+    assert not figure.legends
+    assert {"before, 95 %", "after, 95 %", "measured, 95 %"} <= set(lengths)
+    assert not set(lengths) & set(inputs)
 
 
 def test_counts_in_dry_air_are_beside_the_axis(shapes, monkeypatch):

@@ -75,8 +75,10 @@ def roughness(dataset: xr.Dataset) -> Figure:
         """The given roughness, what a dash means at any humidity, and the crossings in words."""
         panel.axvline(given, color="0.6", linestyle=":", label="as given")
         panel.plot([], [], "_", color="0.3", markersize=8, label="simulated limit")
-        panel.plot([], [], color="0.3", **_SURE, solid_capstyle="butt", label="sure: simulated limit meets it, 95 %")
-        panel.plot([], [], "o", color="0.3", fillstyle="none", label="estimate meets it, bar 95 %")
+        panel.plot(
+            [], [], color="0.3", **_SURE, solid_capstyle="butt", label="sure: simulated limit meets it, one-sided 95 %"
+        )
+        panel.plot([], [], "o", color="0.3", fillstyle="none", label="estimate meets it, bar: two-sided 95 %")
         return _crossings(curve, shape)
 
     return _curves(curve, _simulated, marks)

@@ -84,7 +84,7 @@ def stoppers(
     for line in lines:
         line[0, 0].set_ylabel("P(stuck) [–]")
         line[1, 0].set_ylabel(on_own_axes("pull-off force [µN]", line))
-    letter_lines(lines, list(datasets))
+    letter_lines(lines, list(datasets), (": share stuck", ": force against humidity"))
     if sentences := [f"{name}: {sentence}" for name, limits in warnings.items() for sentence in words.texts(limits)]:
         figure.set_label("\n".join(["Warnings:", *sentences]))
         figure.supxlabel("Some results are beyond limits of the model.", fontsize=7, ha="left", x=0.01)
@@ -166,7 +166,7 @@ def _force_over_humidity(panel, dataset, answer):
     if np.isfinite(restoring := TO_UN * float(dataset.restoring_force)):
         entries.append(panel.axhline(restoring, color="0.4", linestyle=":", linewidth=0.8, label="restoring force"))
     if answer is not None:
-        entries += _forces_to_build(panel, [placed.get(h, h) for h in dataset.humidity.values], answer)
+        entries += _forces_to_build(panel, placed, answer)
     if not single.all():
         label = f"worst {worst.choose(f'humidity {worst.humidity:.2f}', worst.where)}, by the mean"
         entries += panel.plot([placed[worst.humidity]], [float(means.max())], "v", color="black", label=label)
@@ -175,11 +175,13 @@ def _force_over_humidity(panel, dataset, answer):
     humidity_axis(panel, placed)
 
 
-def _forces_to_build(panel, places_of_airs, answer):
-    """Forces to build in the stated airs, and the largest between them if it is stricter, as entries of a legend."""
-    label = f"to build in the stated airs, {safe_size(answer.build, answer.sought)}"
-    forces = np.full(len(places_of_airs), TO_UN * answer.build)
-    entries = panel.plot(places_of_airs, forces, "D", color=BUILD, markersize=4, label=label)
+def _forces_to_build(panel, placed, answer):
+    """Force to build in the air that decides, and the largest between the stated airs if it is stricter, for a legend.
+
+    Other stated airs alone would need less.
+    """
+    label, air = f"to build for all stated airs, {safe_size(answer.build, answer.sought)}", answer.together.humidity
+    entries = panel.plot(placed.get(air, air), TO_UN * answer.build, "D", color=BUILD, markersize=4, label=label)
     if between := answer.between:
         label = f"between them, interpolated, RH {between.humidity:.2g}: {safe_size(between.size, answer.sought)}"
         style = {"color": BUILD, "markersize": 5, "markerfacecolor": "white", "label": label}
@@ -231,6 +233,8 @@ def budget(budgets: Mapping[tuple, xr.Dataset]) -> Figure:
     letter(axes, [title for title, *_ in contents])
     marks = [Patch(color=colour, label=Air(humidity).words) for humidity, colour in colours.items()]
     marks.append(Line2D([], [], **_ERROR, marker="|", markersize=3, label="± standard error"))
+    if len(marks) > 2:
+        marks.append(Line2D([], [], linestyle="", label="in titles: airs in this order"))
     legend_outside(figure, (marks, [mark.get_label() for mark in marks]), "lower", 8)
     return figure
 
@@ -248,16 +252,15 @@ def _contents(text, cases):
 
 
 def _in_words(cases):
-    """Sentences on total and scatter: standard uncertainties at all humidities, with their airs."""
+    """Sentences on uncertainty and scatter, numbers in the order of the humidities."""
     budgets = [budget_of(dataset) for dataset in cases.values()]
     totals = [budget.effect(budget.names) for budget in budgets]
     for name, numbers in (
-        ("total", totals),
+        ("standard uncertainty", totals),
         ("devices scatter", [float(dataset.scatter) for dataset in cases.values()]),
     ):
-        texts = [f"±\u00a0{number(100 * deviation, '#.2g').rstrip('.')}\u00a0%" for deviation in numbers]
-        airs = [f"{Air(humidity).words} ".replace(" ", "\u00a0") * (len(cases) > 1) for humidity in cases]
-        yield f"{name} {', '.join(air + text for air, text in zip(airs, texts, strict=True))}"
+        texts = [number(100 * deviation, "#.2g").rstrip(".") for deviation in numbers]
+        yield f"{name} ± {', '.join(texts)} %"
 
 
 def _measurements(cases):

@@ -146,7 +146,7 @@ def profiles(name: str, characters: Mapping[str, xr.Dataset]) -> Figure:
 #: Label of the wave number.
 _ZETA = r"wave number $\zeta$ [rad/µm]"
 #: Line of the error of the closed form.
-_CLOSED = {"linestyle": (0, (1, 3)), "linewidth": 1}
+_CLOSED = {"linestyle": "-", "linewidth": 0.6}
 
 
 @styled
@@ -166,7 +166,7 @@ def spectra(surfaces: Mapping[str, tuple[xr.Dataset, xr.Dataset, xr.Dataset, xr.
     error.set(xlabel="iteration", ylabel="mean error per ring [%]", yscale="log")
     error.xaxis.set_major_locator(MaxNLocator(integer=True))
     plain_log(error.yaxis)
-    error.plot([], [], color="0.3", label="closed form", **_CLOSED)
+    error.plot([], [], color="0.3", label="closed form, without marks", **_CLOSED)
     letter((density, ratio, error), ["drawn surfaces, target grey", "closed form", "iterative algorithm"])
     legend_outside(figure, handles(error), "lower", 6)
     return figure

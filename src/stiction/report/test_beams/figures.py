@@ -12,6 +12,7 @@ from stiction.report.style import (
     INTERVAL,
     figure_stage,
     humidity_axis,
+    is_page,
     legend_below,
     legend_outside,
     letter,
@@ -57,9 +58,12 @@ def test_beams(update: xr.Dataset) -> Figure:
         axes[0, 0].set_ylabel("crack length [µm]")
     _inputs(axes[0, -1], moved, _names(moved, arrays))
     legend_below(axes[0, -1], _explained())
+    if is_page() and arrays:
+        legend_below(axes[0, -2], list(shared.values()))
     named = arrays if len(arrays) > 1 else ["crack lengths of test beams"] * len(arrays)
     letter(axes, [*named, f"inputs; {others} others hardly move" if others else "inputs"])
-    legend_outside(figure, (list(shared.values()), list(shared)), "lower", 3)
+    if not is_page():
+        legend_outside(figure, (list(shared.values()), list(shared)), "lower", 3)
     return figure
 
 
@@ -105,8 +109,9 @@ def _lengths(panel, data, room):
     for name, centre, quantiles, colour in cases:
         low, high = (computed * np.exp(quantiles.interp(score=end).values) for end in (-INTERVAL, INTERVAL))
         for along, order in bands:
-            panel.fill_between(along, low[order], high[order], color=colour, alpha=0.25, lw=0)
-            entries += panel.plot(along, centre[order], color=colour, label=f"{name} the measurement, 95 %")
+            style = {"color": colour, "alpha": 0.25, "lw": 0, "label": f"{name}, 95 %"}
+            entries += panel.plot(along, centre[order], color=colour, label=f"{name} the measurement")
+            entries.append(panel.fill_between(along, low[order], high[order], **style))
     if data.measured.notnull().any():
         error = INTERVAL * TO_UM * (data.measured * data.datum_measured_error).values
         entries.append(panel.errorbar(humidity, TO_UM * data.measured, yerr=error, **_POINT, label="measured, 95 %"))
