@@ -18,7 +18,7 @@ author = "The stiction developers"
 project_copyright = "2026, The stiction developers"
 release = stiction.__version__
 
-extensions = ["myst_parser", "mathml", "plain", "sphinx_copybutton", "sphinx_gallery.gen_gallery"]
+extensions = ["myst_parser", "mathml", "minus", "plain", "sphinx_copybutton", "sphinx_gallery.gen_gallery"]
 extensions += [f"sphinx.ext.{name}" for name in ("autodoc", "autosummary", "napoleon", "viewcode")]
 exclude_patterns = ["_build", "templates", "gallery"]
 templates_path = ["_templates"]

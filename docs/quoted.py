@@ -104,11 +104,12 @@ def said(frame):
 
 
 def life(frame):
-    """``life_C1_voltage``: both bounds of an answer about a device in its unit; ``life_C1_length``: its length [µm]."""
+    """``life_C1_voltage``: both bounds of an answer in its unit, ``_least``: the lower; ``life_C1_length`` [µm]."""
     texts = {}
     for row in frame.itertuples(index=False):
-        bounds = dict.fromkeys(bounds_in_words(row.at_least, row.at_most, row.unit))
-        texts[f"life_{row.device}_{row.answer}"] = " to ".join(bounds)
+        bounds = bounds_in_words(row.at_least, row.at_most, row.unit)
+        texts[f"life_{row.device}_{row.answer}"] = " to ".join(dict.fromkeys(bounds))
+        texts[f"life_{row.device}_{row.answer}_least"] = bounds[0]
         texts[f"life_{row.device}_length"] = bounding(row.length_um, 3, up=False)
     return texts
 

@@ -518,3 +518,12 @@ def test_docs_build_without_a_warning_and_without_a_network(tmp_path, builder):
         page = (tmp_path / "built" / "python.html").read_text(encoding="utf-8")
         assert "<msub>" in page
         assert not re.findall(r'(?:src|href)="(?:https?:)?//(?!pradyunsg|github)[^"]*\.(?:js|css)', page)
+
+
+def test_text_of_pages_has_signs_of_minus_and_code_keeps_its_hyphens(monkeypatch):
+    core = pytest.importorskip("docutils.core")
+    pytest.importorskip("sphinx")
+    monkeypatch.syspath_prepend(DOCS / "_ext")
+    document = core.publish_doctree("By -5.3 %, 1 - p, 2026-11-30, ``a[-1]``::\n\n    n = -1\n")
+    importlib.import_module("minus").Minus(document).run()
+    assert document.astext() == "By −5.3 %, 1 − p, 2026-11-30, a[-1]:\n\nn = -1"

@@ -109,7 +109,8 @@ def test_more_touchdowns_need_shorter_beams_and_a_stated_length_has_a_probabilit
 @pytest.mark.parametrize(
     ("old", "new", "reason"),
     [
-        ("kind: cantilever", "kind: bridge", "only cantilevers and stoppers"),
+        ("kind: cantilever", "kind: bridge", "is not complete, at 'residual_stress_MPa'"),
+        ("kind: cantilever", "kind: probe", "only cantilevers, bridges and stoppers"),
         ("gap_um: 20, humidities: [0.6]}\n", "gap_um: 20, voltage_V: 5, humidities: [0.6]}\n", "dielectric"),
         ("gap_um: 20, humidities: [0.6]}\n", "gap_um: 20, strip_um: 1, humidities: [0.6]}\n", "strip_um"),
         ("humidities: [0.6]}\n", "humidities: [0.999]}\n", "beyond what was learnt"),
@@ -202,17 +203,31 @@ def test_a_stopper_by_options_is_that_of_a_file(tmp_path, capsys):
     assert f"  1 in 1000 sticks between {least:g} and {most:g} µN (90 %): use at least {most:g}." in of_file
 
 
+OF_BRIDGE = ["--rms=3", "--like=B2", "--rh=0.6", "--thickness=2", "--gap=2", "--stress=50"]
 OF_STOPPER = ["--rms=3", "--like=B2", "--rh=0.6", "--contact", "3", "2", "--force=40"]
 WITH_VOLTAGE = [*OPTIONS, "--voltage=5", "--dielectric", "100", "3.9", "--skewness=-0.5", "--kurtosis=4"]
 
 
-@pytest.mark.parametrize("words", [OPTIONS, OF_STOPPER, WITH_VOLTAGE])
+@pytest.mark.parametrize("words", [OPTIONS, OF_BRIDGE, OF_STOPPER, WITH_VOLTAGE])
 def test_the_printed_file_is_valid_and_has_the_same_estimate(tmp_path, capsys, words):
     lines = said(capsys, *words)[1]
     (tmp_path / "mine.yaml").write_text("\n".join(lines[lines.index("run: {pairs: [mine], studies: []}") :]))
     assert main(["check", str(tmp_path / "mine.yaml"), "-d", str(tmp_path)]) == 0
     capsys.readouterr()
     assert lengths(said(capsys, str(tmp_path / "mine.yaml"))[1]) == lengths(lines)
+
+
+def test_a_stress_makes_a_bridge_and_more_of_it_lets_it_be_longer(capsys):
+    loose, tight, beam = (
+        lengths(said(capsys, *OF_BRIDGE[:-1], *stress)[1])[1000][0] for stress in (["--stress=0"], ["--stress=100"], [])
+    )
+    assert loose < 0.9 * tight
+    assert beam < 0.9 * loose, "the control: the tip of a cantilever of these sizes"
+    of_file = said(capsys, *OF_BRIDGE)[1]
+    assert (
+        "  Mine: {kind: bridge, pair: mine, thickness_um: 2.0, gap_um: 2.0, width_um: 30.0, residual_stress_MPa: 50.0,"
+        in (of_file[-1][: len(of_file[-1])])
+    )
 
 
 def test_no_file_is_printed_for_a_stopper_without_a_force_which_a_run_would_refuse(capsys):
@@ -329,8 +344,12 @@ def test_a_file_takes_no_options_and_must_have_devices(tmp_path, capsys):
     ("words", "reason"),
     [
         (["--contact", "3", "3", "--voltage=5"], "--voltage is for cantilevers alone"),
-        (["--contact", "3", "3", "--thickness=2"], "--thickness is for cantilevers alone"),
+        (["--contact", "3", "3", "--thickness=2"], "--thickness is for beams alone"),
+        (["--contact", "3", "3", "--stress=2"], "--stress is for bridges alone"),
         (["--thickness=2", "--gap=20", "--force=5"], "--force is for stoppers alone"),
+        (["--thickness=2", "--gap=2", "--stress=50", "--force=5"], "--force is for stoppers alone"),
+        (["--thickness=2", "--gap=2", "--stress=50", "--voltage=5"], "--voltage is for cantilevers alone"),
+        (["--thickness=2", "--gap=2", "--stress=-5"], "--stress must be 0 or above, got -5.0"),
     ],
 )
 def test_an_option_of_another_device_is_refused_and_not_left_out(capsys, words, reason):

@@ -155,7 +155,7 @@ def test_a_spring_has_the_force_of_its_gap():
         ({"tilt_deg": [0.1]}, "tilt_deg"),
         ({"voltage_V": 3}, "voltage_V"),
         ({"humidities": [0.999]}, "beyond what was learnt"),
-        ({"kind": "probe", "radius_um": 5}, "only cantilevers and stoppers"),
+        ({"kind": "probe", "radius_um": 5}, "only cantilevers, bridges and stoppers"),
     ],
 )
 def test_a_stopper_that_was_not_learnt_has_no_number(keys, reason):

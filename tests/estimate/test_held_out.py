@@ -31,13 +31,17 @@ def cells(line):
     return [cell.strip() for cell in line.strip("|").split("|")]
 
 
-@pytest.mark.parametrize("test", ["tested", "tested_forces"])
+#: Parts of the table by the function that tests them.
+PARTS = {"tested": "", "tested_bridges": "bridges", "tested_forces": "stoppers"}
+
+
+@pytest.mark.parametrize("test", PARTS)
 @pytest.mark.parametrize(("errors", "inside"), [((0.5, -0.9, 0.99), 3), ((0.5, -1.1, 0.99), 2), ((2.0, 3.0, -4.0), 0)])
 def test_a_row_has_the_errors_and_the_surfaces_within_the_intervals(monkeypatch, errors, inside, test):
-    part = content() if test == "tested" else content()["stoppers"]
+    part = content()[PARTS[test]] if PARTS[test] else content()
     half, found = of_surfaces(*errors, part=part)
-    monkeypatch.setattr(held_out, "tested", lambda *_: [])
-    monkeypatch.setattr(held_out, "tested_forces", lambda *_: [])
+    for each in PARTS:
+        monkeypatch.setattr(held_out, each, lambda *_: [])
     refused = of_estimates.Tested(len(errors), math.nan, 1.0, math.nan)
     monkeypatch.setattr(held_out, test, lambda folder, name, *_, **__: [*found, refused] * (name == "check_any"))
     monkeypatch.setattr(held_out, "SETS", {"check_any": "any", "check_none": "none"})
@@ -91,3 +95,16 @@ def test_rows_of_a_stopper_are_forces_that_grow_where_fewer_stick():
     assert sorted(found) == [(air, one_in) for air in (0.44, 0.67, 0.9) for one_in in (100, 1000)]
     for air in (0.44, 0.67, 0.9):
         assert all(fewer > more for fewer, more in zip(found[air, 1000], found[air, 100], strict=True))
+
+
+def test_rows_of_a_bridge_agree_with_the_run_within_their_intervals():
+    found = {}
+    for line in held_out.of_runs(LENGTHS, FORCES, DEVICES):
+        if line.startswith("| R1 | 0"):
+            _, air, one_in, of_run, estimate, interval = cells(line)
+            low, high = map(float, interval.split(" to "))
+            assert low < float(estimate) < high < 1.3 * low
+            assert low <= float(of_run.removesuffix(" µm")) <= high
+            found[air, int(one_in)] = float(estimate)
+    assert list(found) == [("0.67", 100), ("0.67", 1000), ("0.67", 10_000)]
+    assert sorted(found.values(), reverse=True) == list(found.values())

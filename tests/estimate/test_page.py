@@ -11,6 +11,7 @@ import pytest
 
 import stiction.estimate.table as table_of_estimate
 from stiction.estimate.answer import CONFIDENCES, answer
+from stiction.estimate.bridge import Bridge
 from stiction.estimate.force import Stopper
 from stiction.estimate.length import NotLearnt
 from stiction.estimate.question import Question, surface
@@ -60,6 +61,16 @@ def cantilever(rng):
     return device
 
 
+def bridge(rng):
+    """Numbers of a random bridge, a few of them without stress or too thick."""
+    device = {
+        "thickness": rng.uniform(0.8e-6, 7e-6),
+        "gap": rng.uniform(0.5e-6, 5e-6),
+        "width": rng.uniform(8e-6, 40e-6),
+    }
+    return device | {"stress": float(rng.choice([0, rng.uniform(0, 2e8)])), "length": rng.uniform(5e-5, 8e-4)}
+
+
 def stopper(rng):
     """Numbers of a random stopper, of which a few are too large."""
     return {"sides": rng.uniform(1e-6, 6.3e-6, 2).tolist(), "force": 10 ** rng.uniform(-6, -3)}
@@ -73,7 +84,10 @@ def in_python(question, table):
         surface(question["substrate"], library),
     )
     own = {key: value for key, value in question.items() if key not in ("beams", "substrate", "humidities")}
-    named, of = {str(k): member for k, member in enumerate(members)}, Stopper if "sides" in question else Question
+    named = {str(k): member for k, member in enumerate(members)}
+    of = next((one for key, one in (("sides", Stopper), ("stress", Bridge)) if key in question), Question)
+    if of is Bridge:
+        own.pop("constant")  # counts in dry air alone, where bridges are refused
     asked = of("", (stated, other), (named, {}), tuple(question["humidities"]), **own)
     try:
         found = answer(asked, table, table_of_estimate.process("tips"), table_of_estimate.process("full"))
@@ -96,7 +110,7 @@ def in_javascript(answers):
 
 
 @pytest.mark.skipif(NODE is None, reason="node is not on this machine")
-@pytest.mark.parametrize("of_kind", [cantilever, stopper])
+@pytest.mark.parametrize("of_kind", [cantilever, bridge, stopper])
 def test_the_page_computes_what_python_does(of_kind):
     rng, table = np.random.default_rng(7), table_of_estimate.content()
     questions = [drawn(rng, of_kind) for _ in range(STATES)]

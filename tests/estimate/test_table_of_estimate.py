@@ -7,24 +7,27 @@ import pytest
 
 from stiction.estimate import dry as of_dry_air
 from stiction.estimate.answer import CONFIDENCES
+from stiction.estimate.bridge import COORDINATES as OF_BRIDGES
 from stiction.estimate.learning import dry, dry_patches, training
 from stiction.estimate.learning.design import FILMS, SurfaceLaw, points, states
-from stiction.estimate.learning.make import control_of_forces, control_of_patches, control_of_slopes
+from stiction.estimate.learning.make import control_of_bridges, control_of_forces, control_of_patches, control_of_slopes
 from stiction.estimate.page import page
 from stiction.estimate.state import COORDINATES, OF_PATCHES
 from stiction.estimate.table import FILE, Surrogate, content, process
 from stiction.progress import without_progress
 
 DOCS = Path(__file__).parents[2] / "docs"
-AGAIN = "tips or patches have changed since the estimate was learnt: run make surrogate"
+AGAIN = "tips, patches or bridges have changed since the estimate was learnt: run make surrogate"
 
 
-def test_tips_and_patches_are_still_those_that_were_learnt():
+def test_tips_patches_and_bridges_are_still_those_that_were_learnt():
     with without_progress():
         slopes = control_of_slopes()
         pressures = control_of_patches()
+        held = control_of_bridges()
     np.testing.assert_allclose(slopes, content()["control"]["slopes"], rtol=1e-4, err_msg=AGAIN)
     np.testing.assert_allclose(pressures, content()["control"]["patches"], rtol=1e-4, err_msg=AGAIN)
+    np.testing.assert_allclose(held, content()["control"]["bridges"], rtol=1e-4, err_msg=AGAIN)
 
 
 def test_contacts_in_dry_air_are_still_those_that_were_learnt():
@@ -48,15 +51,18 @@ def test_the_table_is_small_and_the_page_of_the_docs_has_it():
 
 
 def test_the_table_has_what_the_estimate_reads():
-    stoppers = content()["stoppers"]
+    stoppers, bridges = content()["stoppers"], content()["bridges"]
     assert list(COORDINATES) == content()["coordinates"]
     assert list(OF_PATCHES) == stoppers["coordinates"]
+    assert list(OF_BRIDGES) == bridges["coordinates"]
     in_dry_air = content()["dry"]
     assert list(of_dry_air.OF_TIPS) == in_dry_air["coordinates"]
     assert list(of_dry_air.OF_PATCHES) == in_dry_air["stoppers"]["coordinates"]
-    for part in (content(), stoppers, in_dry_air, in_dry_air["stoppers"]):
+    for part in (content(), stoppers, bridges, in_dry_air, in_dry_air["stoppers"]):
         assert 0 < part["margins"][CONFIDENCES[0]] <= part["margins"][CONFIDENCES[1]] < 5
-    for one in (process("tips"), process("full"), Surrogate(**stoppers["forces"]), Surrogate(**stoppers["full"])):
+    others = [Surrogate(**part[name]) for part, name in ((stoppers, "forces"), (bridges, "middle"))]
+    others += [Surrogate(**part["full"]) for part in (stoppers, bridges)]
+    for one in (process("tips"), process("full"), *others):
         assert len(one.nodes[0]) == len(one.columns)
 
 

@@ -311,6 +311,28 @@ def test_the_controls_begin_with_the_number_of_the_answer(run, browser, device):
         assert shown["stuck"].endswith(stuck)
 
 
+#: Paths of the curve and of the band of the first chart.
+PATHS = "return ['.curve', '.band'].map(name => document.querySelector('.charts path' + name).getAttribute('d'))"
+
+
+def corners(path):
+    """Corners of a path of lines (n, 2)."""
+    return np.array([corner.split() for corner in re.split("[ML]", path)[1:]], float)
+
+
+@in_a_browser
+@pytest.mark.parametrize("device", ["C1", "R1", "S1"])
+def test_the_band_begins_where_the_simulation_resolves_its_upper_end(run, browser, device):
+    browser.open(page_of(run, device))
+    curve, band = map(corners, browser.run(PATHS))
+    lower, upper = band[: len(band) // 2], band[len(band) // 2 :][::-1]
+    np.testing.assert_array_equal(lower[:, 0], upper[:, 0])
+    assert {*lower[:, 0]} <= {*curve[:, 0]}
+    rising = upper if device != "S1" else upper[::-1]
+    heights = rising[:3, 1]
+    assert len({*heights}) > 1 or (heights == curve[:, 1].min()).all(), "a flat end resolves nothing, but for all"
+
+
 @in_a_browser
 def test_keys_move_a_control_at_once_and_the_address_keeps_it(run, browser):
     browser.open(page_of(run, "C1"))

@@ -69,7 +69,7 @@ def test_the_file_of_the_page_is_that_of_its_sliders(opened):
     assert math.isfinite(float(opened.run("return document.getElementById('of_skewness').textContent")))
 
 
-@pytest.mark.parametrize("kind", ["cantilever", "stopper"])
+@pytest.mark.parametrize("kind", ["cantilever", "bridge", "stopper"])
 @pytest.mark.parametrize("known", ["[]", "['hurst', 'corner_rad_per_um', 'kurtosis']"])
 @pytest.mark.parametrize("air", ["0.6", "dry"])
 def test_the_command_says_of_the_file_of_the_page_what_the_page_says(opened, tmp_path, capsys, kind, known, air):

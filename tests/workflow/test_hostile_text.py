@@ -54,7 +54,9 @@ def test_a_report_runs_no_code_of_a_study_and_shows_its_text(folder):
 def test_tables_and_captions_beside_figures_show_it(folder):
     results = folder / "results"
     table = Reading((results / "tables" / "scans.html").read_text(encoding="utf-8"))
-    assert table.code == ["meta", "meta"]
+    assert table.code == ["meta", "meta", "script"]
+    (own,) = table.text["script"]
+    assert own.startswith("if (self !== top)"), "the link out of a report"
     assert {HOSTILE, HOSTILE_FILE} < {*table.text["td"]}
     page = (results / "report.html").read_text(encoding="utf-8")
     known = re.search(r"^ *var results = (\{.*\});$", page, re.MULTILINE)[1]

@@ -14,12 +14,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from stiction.contact.air import is_humid
+from stiction.estimate.bridge import Bridge, Stretched
 from stiction.estimate.force import ForceRow, Stopper
 from stiction.estimate.length import Impossible, LengthRow, Lengths, NotLearnt, after, normal_score, score_at
 from stiction.estimate.question import Question
 from stiction.estimate.state import film
 from stiction.estimate.table import Surrogate
-from stiction.estimate.voltage import at_voltage, without_voltage
+from stiction.estimate.voltage import Driven
 
 #: Fractions of stuck devices in the answer.
 FRACTIONS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
@@ -34,7 +35,7 @@ _STUDENT = {"90": 2.353363, "95": 3.182446}
 class Estimate:
     """Estimate of one device."""
 
-    question: Question | Stopper
+    question: Question | Stopper | Bridge
     rows: tuple[LengthRow | ForceRow, ...]
     stuck: tuple[float, float, float] | None  #: fraction at the stated length or force, and its ends of 95 %
     humidity: float  #: air that decides
@@ -46,7 +47,7 @@ class Estimate:
 
 
 def answer(
-    question: Question | Stopper | NotLearnt, table: Mapping[str, Any], tips: Surrogate, full: Surrogate | None
+    question: Question | Stopper | Bridge | NotLearnt, table: Mapping[str, Any], tips: Surrogate, full: Surrogate | None
 ) -> Estimate:
     """Answer to a question.
 
@@ -67,7 +68,7 @@ def answer(
 
 
 def in_one_air(
-    question: Question | Stopper, air: float, fractions: Sequence[float], *learnt: Any
+    question: Question | Stopper | Bridge, air: float, fractions: Sequence[float], *learnt: Any
 ) -> list[LengthRow | ForceRow]:
     """Lengths or forces for some fractions, at one touchdown in one air. Learnt as of `answer`.
 
@@ -88,7 +89,7 @@ class LengthsInAir:
     stated: Lengths
     members: tuple[Lengths, ...]  #: on typical surfaces in place of a partly assumed one
     averaged: bool  #: as of `stiction.estimate.question.Question`
-    drive: float = 0.0  #: of a voltage [m⁻⁴]
+    closed: Driven | Stretched  #: form of a length from the bare one, without voltage or stress
 
     def centre(self, score: float) -> tuple[float, float]:
         """Mean and scatter of the logarithm of a length [m] over surfaces like those that are assumed."""
@@ -100,33 +101,29 @@ class LengthsInAir:
         return mean, scatter * math.sqrt(1 + 1 / m)
 
     def logarithm(self, score: float) -> float:
-        """Logarithm of the length at a normal score without voltage."""
+        """Logarithm of the bare length at a normal score."""
         return self.centre(score)[0] if self.averaged else math.log(self.stated.at(score))
 
     def ends(self, score: float, confidence: str) -> tuple[float, float]:
-        """Ends of the interval of that of a length without voltage."""
+        """Ends of the interval of that of a bare length."""
         mean, scatter = self.centre(score)
         half = math.hypot(_margin(self.errors, confidence, score, self.stated.slope), _STUDENT[confidence] * scatter)
         return mean - half, mean + half
 
     def length(self, score: float) -> float:
         """Length at a normal score [m]."""
-        return self._driven(math.exp(self.logarithm(score)))
+        return self.closed.length(math.exp(self.logarithm(score)))
 
     def scores(self, length: float) -> tuple[float, float, float]:
         """Normal scores at which a length, and the upper and the lower end of 95 %, is a length [m]."""
-        value = math.log(without_voltage(length, self.drive))
+        value = math.log(self.closed.bare(length))
         upper, lower = (score_at(lambda score, k=k: self.ends(score, "95")[k], value) for k in (1, 0))
         return score_at(self.logarithm, value), upper, lower
-
-    def _driven(self, length):
-        """Length at the voltage from that without it [m]."""
-        return at_voltage(length, self.drive) if self.drive else length
 
     def row(self, fraction: float, score: float) -> LengthRow:
         """Length and intervals at a normal score."""
         ends = {
-            confidence: tuple(self._driven(math.exp(end)) for end in self.ends(score, confidence))
+            confidence: tuple(self.closed.length(math.exp(end)) for end in self.ends(score, confidence))
             for confidence in CONFIDENCES
         }
         return LengthRow(fraction, self.length(score), ends)
@@ -170,9 +167,9 @@ def _in_air(question, air, table, tips, full):
     pairs = [beam + substrate]
     pairs += [question.members[0].get(name, beam) + question.members[1].get(name, substrate) for name in names]
     stated, *members = (_lengths(question, heights, air, table, tips, full) for heights in pairs)
-    drive = question.drive(table["modulus"])
+    closed = question.closed(table["modulus"])
     errors = question.errors(table if is_humid(air) else table["dry"])
-    return LengthsInAir(errors, stated, tuple(members), question.averaged, drive)
+    return LengthsInAir(errors, stated, tuple(members), question.averaged, closed)
 
 
 def _lengths(question, heights, air, table, tips, full):

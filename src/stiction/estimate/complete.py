@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from stiction.config.reading import paper
+from stiction.estimate.bridge import Bridge
 from stiction.estimate.force import Stopper
 from stiction.estimate.length import NotLearnt
 from stiction.estimate.question import Question, questions
@@ -15,7 +16,9 @@ _WHOLE = ("surfaces", "pairs")
 _SAME = 1e-5
 
 
-def question_of(config: Mapping[str, Any], name: str, section: Mapping[str, Any]) -> Question | Stopper | NotLearnt:
+def question_of(
+    config: Mapping[str, Any], name: str, section: Mapping[str, Any]
+) -> Question | Stopper | Bridge | NotLearnt:
     """Question about a device of a name and a section: what differs from the paper's configuration counts as stated."""
     others = {key: value for key, value in config.items() if key not in (*_WHOLE, "devices")}
     stated = _differing(others, paper()) | {key: config[key] for key in _WHOLE} | {"devices": {name: section}}

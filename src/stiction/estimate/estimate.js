@@ -153,8 +153,53 @@ function ofStopper({sides, force, constant = POLYSILICON}, {modulus, stoppers, d
   return {
     lengths: (heights, water) => reciprocals({heights, film: water, area: areaOf(stoppers), modulus}, stoppers),
     inDryAir: (heights) => dryReciprocals({heights, constant, area: areaOf(dry.stoppers), modulus}, dry.stoppers),
-    drive: 0, errors: (part) => part.stoppers, stated: force && 1 / force,
+    closed: drivenBy(0), errors: (part) => part.stoppers, stated: force && 1 / force,
     row: ({length, intervals}) => ({size: 1 / length, intervals: Object.fromEntries(Object.entries(intervals).map(([key, [low, high]]) => [key, [1 / high, 1 / low]]))}),
+  };
+}
+
+// bridge: lengths without stress stand for those under it
+const DIFFERENT = 0.03, UNITS = {um: 1e-6, MPa: 1e6};
+function endStiffness(kl) {
+  const mean = kl ? Math.tanh(kl / 2) / (kl / 2) : 1;
+  const force = kl < DIFFERENT ? 12 / (1 - kl ** 2 / 10 + 17 * kl ** 4 / 1680) : kl ** 2 / (1 - mean);
+  return [force, force * mean / 2];
+}
+function stretchedBy(stress, thickness, modulus) {
+  const decay = Math.sqrt(12 * stress / modulus) / thickness, ends = (length) => endStiffness(decay * length / 2);
+  const bare = (length) => { const [force, moment] = ends(length); return length * (864 / (force ** 2 * moment)) ** 0.125; };
+  const under = (short) => {
+    let length = short;
+    for (let k = 0; k < 60; k++) length *= short / bare(length);
+    return length;
+  };
+  return {bare, length: under, decay};
+}
+function floodedLength({film, thickness, gap, modulus}) {
+  return (768 * (modulus * thickness ** 3) ** 2 * gap ** 3 / (film.energy ** 2 / film.height)) ** 0.125;
+}
+function ofMiddle(state, {decay}) {
+  const contact = 8 * state.modulus * state.thickness ** 3 * state.gap / (floodedLength(state) ** 3 * tensionOf(state.film));
+  return [...ofPatch({...state, area: state.width * contact}), Math.log(state.gap / state.film.height), decay * contact];
+}
+function lengthsOfBridge(state, closed, {middle, full, coordinates: names}) {
+  const place = ofMiddle(state, closed), {shift, power} = known(full, place, names);
+  const {logarithms, slope} = falling(known(middle, place, names), Math.log(floodedLength(state))), [median] = logarithms;
+  return {logarithms: logarithms.map((each) => median + shift + power * (each - median)), slope: power * slope};
+}
+function ofBridge({thickness, gap, width, stress, length}, {modulus, bridges}) {
+  const closed = stretchedBy(stress, thickness, modulus);
+  return {
+    lengths: (heights, water) => {
+      const sizes = {thickness, gap, width, stress};
+      for (const [name, [low, high, unit]] of Object.entries(bridges.ranges)) {
+        const outside = !(low * UNITS[unit] <= sizes[name] && sizes[name] <= high * UNITS[unit]), symbol = unit.replace("u", "µ");
+        if (outside) throw new NotLearnt(`the ${name} of a bridge must be from ${low} to ${high} ${symbol}`);
+      }
+      return lengthsOfBridge({heights, film: water, thickness, gap, width, modulus}, closed, bridges);
+    },
+    inDryAir: () => { throw new NotLearnt("a bridge was not learnt in dry air"); },
+    closed, errors: (part) => part.bridges, stated: length, row: ({length, intervals}) => ({size: length, intervals}),
   };
 }
 function ofCantilever({thickness, gap, width, length, added, constant = POLYSILICON}, table) {
@@ -162,7 +207,7 @@ function ofCantilever({thickness, gap, width, length, added, constant = POLYSILI
   return {
     lengths: (heights, water) => lengths({heights, film: water, stiffness, width, modulus: table.modulus}, gap, table),
     inDryAir: (heights) => dryLengths({heights, constant, stiffness, width, modulus: table.modulus}, gap, table.dry),
-    drive: 8 * (added || 0) / (3 * stiffness * gap ** 4), errors: (part) => part, stated: length,
+    closed: drivenBy(8 * (added || 0) / (3 * stiffness * gap ** 4)), errors: (part) => part, stated: length,
     row: ({length, intervals}) => {
       if (length <= Math.max(thickness, gap)) throw new NotLearnt("it sticks even at a length below its gap or thickness: change voltage or dielectric");
       return {size: length, intervals};
@@ -207,6 +252,7 @@ function withoutVoltage(length, drive) {
   const cube = length ** -3 - drive * length;
   return cube > 0 ? cube ** (-1 / 3) : Infinity;
 }
+const drivenBy = (drive) => ({length: (bare) => drive ? atVoltage(bare, drive) : bare, bare: (length) => withoutVoltage(length, drive)});
 
 // answer
 const FRACTIONS = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6], STUDENT = {90: 2.353363, 95: 3.182446};
@@ -219,23 +265,23 @@ function centre(one, score) {
   return [mean, Math.sqrt(sum(values.map((value) => (value - mean) ** 2)) / (m - 1)) * Math.sqrt(1 + 1 / m)];
 }
 function answer(question, table) {
-  const {lengths, inDryAir, drive, errors, stated, row} = (question.sides ? ofStopper : ofCantilever)(question, table);
+  const kind = question.sides ? ofStopper : "stress" in question ? ofBridge : ofCantilever;
+  const {lengths, inDryAir, closed, errors, stated, row} = kind(question, table);
   const airs = question.humidities.map((air) => {
     const of = air > 0 ? (each) => lengths(each, film(air, table.temperature, 2, table.water)) : inDryAir;
     return {stated: of(question.stated), members: question.members.map(of), errors: errors(air > 0 ? table : table.dry)};
   });
-  const driven = (length) => drive ? atVoltage(length, drive) : length;
   const once = (p) => -Math.expm1(Math.log1p(-p) / question.touchdowns);
   const rows = FRACTIONS.map((fraction) => {
     const score = normalScore(once(fraction)), ends = {};
     for (const confidence of ["90", "95"]) {
-      const both = airs.map((one) => endsOf(one, score, confidence).map((end) => driven(Math.exp(end))));
+      const both = airs.map((one) => endsOf(one, score, confidence).map((end) => closed.length(Math.exp(end))));
       ends[confidence] = [0, 1].map((side) => Math.min(...both.map((each) => each[side])));
     }
     const length = (one) => Math.exp(logarithmOf(one, score, question.averaged));
-    return {fraction, ...row({length: driven(Math.min(...airs.map(length))), intervals: ends})};
+    return {fraction, ...row({length: closed.length(Math.min(...airs.map(length))), intervals: ends})};
   });
-  return {rows, stuck: stated ? stuck(question, airs, withoutVoltage(stated, drive)) : null};
+  return {rows, stuck: stated ? stuck(question, airs, closed.bare(stated)) : null};
 }
 const logarithmOf = (one, score, averaged) => averaged ? centre(one, score)[0] : Math.log(lengthAt(one.stated, score));
 function endsOf(one, score, confidence) {

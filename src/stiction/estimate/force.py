@@ -19,6 +19,7 @@ from stiction.estimate.length import LengthRow, Lengths, NotLearnt, falling, kno
 from stiction.estimate.state import OF_PATCHES, Film, PatchState
 from stiction.estimate.statistics import Heights
 from stiction.estimate.table import Surrogate
+from stiction.estimate.voltage import Driven
 
 
 @dataclass(frozen=True)
@@ -85,9 +86,9 @@ class Stopper:
         """Reciprocal of its force [1/N]."""
         return None if self.force is None else 1 / self.force
 
-    def drive(self, _modulus: float) -> float:
-        """Drive of a voltage, which it has not."""
-        return 0.0
+    def closed(self, _modulus: float) -> Driven:
+        """Closed form of its voltage, which it has not."""
+        return Driven(0.0)
 
     def errors(self, table: Mapping[str, Any]) -> Mapping[str, Any]:
         """Part of the table with the errors of its forces."""

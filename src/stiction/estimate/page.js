@@ -1,8 +1,8 @@
 // Sliders, table and file of the page. The arithmetic is in estimate.js.
 const TABLE = JSON.parse(document.getElementById("content").textContent);
-const CANTILEVER = "cantilever", STOPPER = "stopper";
+const CANTILEVER = "cantilever", BRIDGE = "bridge", STOPPER = "stopper";
 const INPUTS = [
-  ["kind", "Device", [CANTILEVER, STOPPER], CANTILEVER],
+  ["kind", "Device", [CANTILEVER, BRIDGE, STOPPER], CANTILEVER],
   ["like", "Typical surface for what you do not know", Object.keys(TABLE.library), "B2"],
   ["rms_nm", "rms of the underside [nm]", 1, 8, 0.1, 3],
   ["hurst", "Hurst exponent", 0.3, 1, 0.05, null],
@@ -17,13 +17,16 @@ const INPUTS = [
   ["force_uN", "restoring force [µN]", 1, 500, 1, 100],
   ["thickness_um", "thickness of the beam [µm]", 1, 6, 0.1, 2.6],
   ["gap_um", "gap [µm]", 2, 30, 0.5, 20],
+  ["below_um", "gap [µm]", 0.5, 6, 0.1, 2],
   ["width_um", "width of the beam [µm]", 8, 40, 1, 30],
   ["length_um", "length of the beam [µm]", 50, 600, 5, 250],
+  ["stress_MPa", "tensile stress [MPa]", 0, 200, 5, 50],
   ["touchdowns", "touchdowns", 1, 1000, 1, 1],
   ["voltage_V", "voltage in contact [V]", 0, 50, 0.5, 0],
   ["dielectric_nm", "dielectric, thickness over permittivity [nm]", 10, 1000, 10, 100],
 ];
-const OWN = {[CANTILEVER]: ["thickness_um", "gap_um", "width_um", "length_um", "voltage_V", "dielectric_nm"], [STOPPER]: ["side_um", "other_um", "force_uN"]};
+const OWN = {[CANTILEVER]: ["thickness_um", "gap_um", "width_um", "length_um", "voltage_V", "dielectric_nm"],
+  [BRIDGE]: ["thickness_um", "below_um", "width_um", "length_um", "stress_MPa"], [STOPPER]: ["side_um", "other_um", "force_uN"]};
 const DRY = "dry", DRIEST = 0.345, airOf = (value) => value("humidity") < DRIEST ? DRY : value("humidity");
 const PAIR = ["known_skewness", "known_kurtosis"]; // a file states both or neither
 const OPEN = ["hurst", "corner_rad_per_um", "cutoff_rad_per_um", "skewness", "kurtosis"], byId = (id) => document.getElementById(id);
@@ -52,11 +55,14 @@ function questionOf({own, kind, like, substrate, value, open}) {
   const asked = {stated: of(like), members: open ? Object.keys(TABLE.library).map(of) : [], averaged: false,
     humidities: [airOf(value) === DRY ? 0 : airOf(value)], touchdowns: value("touchdowns")};
   if (kind === STOPPER) return {...asked, sides: ["side_um", "other_um"].map((key) => value(key) * 1e-6), force: value("force_uN") * 1e-6};
+  const beam = {...asked, thickness: value("thickness_um") * 1e-6, width: value("width_um") * 1e-6, length: value("length_um") * 1e-6};
+  if (kind === BRIDGE) return {...beam, gap: value("below_um") * 1e-6, stress: value("stress_MPa") * 1e6};
   const gap = value("gap_um") * 1e-6, energy = energyOf(value("voltage_V"), value("dielectric_nm") * 1e-9, gap);
-  return {...asked, added: energy, thickness: value("thickness_um") * 1e-6, gap, width: value("width_um") * 1e-6, length: value("length_um") * 1e-6};
+  return {...beam, added: energy, gap};
 }
 const RAREST = 1e-6, NEARLY_ALL = 0.99; // fractions that are shown
-const WORDS = {[CANTILEVER]: ["length", "µm", "length_um"], [STOPPER]: ["force", "µN", "force_uN"]};
+const WORDS = {[CANTILEVER]: ["length", "µm", "length_um"], [BRIDGE]: ["length", "µm", "length_um"], [STOPPER]: ["force", "µN", "force_uN"]};
+const grouped = (number) => number < 10000 ? `${number}` : `${number}`.replace(/\B(?=(\d{3})+$)/g, "\u00a0");
 const micro = (size) => Number((size * 1e6).toPrecision(3)).toString();
 function percent(part, touchdowns) {
   if (part < RAREST) return `less than ${(100 * RAREST).toFixed(4)} %`;
@@ -66,7 +72,7 @@ function show() {
   for (const [key, , low] of INPUTS) if (!Array.isArray(low)) byId("of_" + key).textContent = byId(key).value;
   const given = stated();
   byId("of_humidity").textContent = airOf(given.value);
-  for (const kind in OWN) for (const key of OWN[kind]) byId(key).closest("label").hidden = kind !== given.kind;
+  for (const key of Object.values(OWN).flat()) byId(key).closest("label").hidden = !OWN[given.kind].includes(key);
   for (const key of OPEN) {
     byId(key).disabled = !(key in given.own);
     if (byId(key).disabled) byId("of_" + key).textContent = `as ${given.like}`;
@@ -78,7 +84,7 @@ function show() {
 }
 function write(found, {kind, value}) {
   const [name, symbol, key] = WORDS[kind];
-  const row = ({fraction, size, intervals}) => `<tr><th scope="row">1 in ${Math.round(1 / fraction)}</th><td>${micro(size)}</td>` +
+  const row = ({fraction, size, intervals}) => `<tr><th scope="row">1 in ${grouped(Math.round(1 / fraction))}</th><td>${micro(size)}</td>` +
     ["90", "95"].map((key) => `<td>${intervals[key].map(micro).join(" to ")}</td>`).join("") + "</tr>";
   const caption = `<caption>${name === "length" ? "Length" : "Force"} at which a fraction sticks [${symbol}]</caption>`;
   byId("table").innerHTML = `${caption}<thead><tr><th scope="col">stuck</th><th scope="col">${name}</th><th scope="col">90 %</th>` +
@@ -99,19 +105,28 @@ function yamlOf({own, kind, like, substrate, value, open}) {
   const surface = Object.entries({...own, ...(open ? {like} : {})}).map(([key, of]) => `${key}: ${of}`).join(", ");
   const air = `humidities: [${airOf(value)}], touchdowns: ${value("touchdowns")}`;
   return `run: {pairs: [mine], studies: []}\nsurfaces:\n  Mine: {${surface}}\npairs:\n` +
-    `  mine: {beam: Mine, substrate: ${substrate}, gap_um: ${value("gap_um")}, humidities: [${airOf(value)}]}\n` +
-    `devices:\n  ${kind === STOPPER ? `Bump: {kind: stopper, pair: mine, contact_um: [${value("side_um")}, ${value("other_um")}], ` +
-    `restoring_force_uN: ${value("force_uN")}, ` : `Lever: {kind: cantilever, pair: mine, ${sizesOf(value)}, `}${air}}\n`;
+    `  mine: {beam: Mine, substrate: ${substrate}, gap_um: ${value(kind === BRIDGE ? "below_um" : "gap_um")}, humidities: [${airOf(value)}]}\n` +
+    `devices:\n  ${NAMES[kind]}: {kind: ${kind}, pair: mine, ${SIZES[kind](value)}, ${air}}\n`;
 }
-function sizesOf(value) {
-  const sizes = ["length_um", "thickness_um", "gap_um", "width_um"].map((key) => `${key}: ${value(key)}`).join(", ");
+const NAMES = {[CANTILEVER]: "Lever", [BRIDGE]: "Bridge", [STOPPER]: "Bump"};
+const SIZES = {
+  [CANTILEVER]: ofLever,
+  [BRIDGE]: (value) => `${ofBeam(value, "below_um")}, residual_stress_MPa: ${value("stress_MPa")}`,
+  [STOPPER]: (value) => `contact_um: [${value("side_um")}, ${value("other_um")}], restoring_force_uN: ${value("force_uN")}`,
+};
+function ofBeam(value, gap) {
+  return ["length_um", "thickness_um", "width_um"].map((key) => `${key}: ${value(key)}`).join(", ") + `, gap_um: ${value(gap)}`;
+}
+function ofLever(value) {
+  const sizes = ofBeam(value, "gap_um");
   const dielectric = `dielectric: {thickness_nm: ${value("dielectric_nm")}, permittivity: 1}`;
   return value("voltage_V") ? `${sizes}, voltage_V: ${value("voltage_V")}, ${dielectric}` : sizes;
 }
+const DRAWN = {[CANTILEVER]: [beam, " at its tip"], [BRIDGE]: [bridge, " at its middle"], [STOPPER]: [bump, ""]};
 function draw({kind, value}) {
   const substrate = '<rect x="0" y="75" width="300" height="12" fill="#8c959f"/>';
-  byId("drawing").innerHTML = substrate + (kind === STOPPER ? bump(value) : beam(value));
-  byId("drawing").setAttribute("aria-label", `Cross-section of the ${kind} that sticks${kind === STOPPER ? "" : " at its tip"}`);
+  byId("drawing").innerHTML = substrate + DRAWN[kind][0](value);
+  byId("drawing").setAttribute("aria-label", `Cross-section of the ${kind} that sticks${DRAWN[kind][1]}`);
 }
 function bump(value) {
   const width = 20 * value("side_um");
@@ -122,6 +137,13 @@ function beam(value) {
   const tip = 75 - thickness, middle = top + 0.35 * gap; // the lower side is the upper one, lower by the thickness
   const outline = `M30 ${top} C 120 ${top} 200 ${middle} 285 ${tip} V 75 C 200 ${middle + thickness} 120 ${top + thickness} 30 ${top + thickness} Z`;
   return `<rect x="0" y="${top}" width="30" height="${75 - top}" fill="#57606a"/><path d="${outline}" fill="#0969da"/>`;
+}
+function bridge(value) {
+  const gap = 10 + 6 * value("below_um"), thickness = 2 + 2 * value("thickness_um"), top = 75 - gap - thickness, low = 75 - thickness;
+  const side = (y, end) => `C 90 ${y} 110 ${end} 150 ${end} C 190 ${end} 210 ${y} 270 ${y}`;
+  const back = (y, end) => `C 210 ${y} 190 ${end} 150 ${end} C 110 ${end} 90 ${y} 30 ${y}`;
+  const clamps = [0, 270].map((x) => `<rect x="${x}" y="${top}" width="30" height="${75 - top}" fill="#57606a"/>`).join("");
+  return `${clamps}<path d="M30 ${top} ${side(top, low)} V ${top + thickness} ${back(top + thickness, 75)} Z" fill="#0969da"/>`;
 }
 byId("form").innerHTML = INPUTS.map(slider).join("");
 byId("form").addEventListener("input", ({target}) => {

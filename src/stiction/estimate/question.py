@@ -9,22 +9,25 @@ from stiction.config.kinds import KINDS
 from stiction.config.units import to_si
 from stiction.contact.air import DRY, DRY_AIR, is_humid, is_possible
 from stiction.estimate import dry
+from stiction.estimate.bridge import Bridge
 from stiction.estimate.force import Stopper
 from stiction.estimate.length import Impossible, LengthRow, Lengths, NotLearnt, lengths, most_after
 from stiction.estimate.state import Film, TipState, stiffness_of
 from stiction.estimate.statistics import Heights, moments_of, slope_of
 from stiction.estimate.table import Surrogate
 from stiction.estimate.voltage import KEYS as OF_VOLTAGES
-from stiction.estimate.voltage import drive_of, energy_of
+from stiction.estimate.voltage import Driven, drive_of, energy_of
 
 Library = Mapping[str, Mapping[str, Any]]
 
-#: Keys of a surface, of a pair, of a cantilever and of a stopper that the estimate knows.
+#: Keys of a surface, of a pair, of a cantilever, of a bridge and of a stopper that the estimate knows.
 OF_SURFACES = ("rms_nm", "like", "hurst", "corner_rad_per_um", "cutoff_rad_per_um", "skewness", "kurtosis")
 OF_SURFACES += ("unknown", "uncertainty", "psd", "published_psd", "mean_summit_radius_um", "summit_density_per_um2")
 OF_PAIRS = ("beam", "substrate", "gap_um", "humidities", "attraction", "coarser_mesh")
 OF_DEVICES = ("kind", "pair", "length_um", "thickness_um", "gap_um", "width_um", "humidities", "touchdowns")
 OF_DEVICES += OF_VOLTAGES
+OF_BRIDGES = ("kind", "pair", "length_um", "thickness_um", "gap_um", "width_um", "residual_stress_MPa")
+OF_BRIDGES += ("humidities", "touchdowns")
 OF_STOPPERS = ("kind", "pair", "contact_um", "restoring_force_uN", "stiffness_N_per_m", "gap_um", "mass_ng")
 OF_STOPPERS += ("humidities", "touchdowns", "electrode")
 #: Keys that change the length to build alone: the estimate is of exact inputs, and leaves out what a run adds.
@@ -90,9 +93,9 @@ class Question:
         """Stiffness as of `stiction.estimate.state`."""
         return stiffness_of(modulus, self.thickness, self.gap)
 
-    def drive(self, modulus: float) -> float:
-        """Drive of its voltage [m⁻⁴], from the modulus of the solids [Pa]."""
-        return drive_of(self.added, self._stiffness(modulus), self.gap)
+    def closed(self, modulus: float) -> Driven:
+        """Closed form of its lengths at its voltage, from the modulus of the solids [Pa]."""
+        return Driven(drive_of(self.added, self._stiffness(modulus), self.gap))
 
     def errors(self, table: Mapping[str, Any]) -> Mapping[str, Any]:
         """Part of the table with the errors of its lengths."""
@@ -187,13 +190,22 @@ def refuse_impossible(numbers: Mapping[str, Any], names: Mapping[str, str] | Non
         value = numbers[key]
         if not all(0 < each < math.inf for each in (value if isinstance(value, Sequence) else [value])):
             raise Impossible(f"{names[key]} must be above 0, got {value}")
+    _refuse_compression(numbers, names)
     for less, more in [pair for pair in _IN_ORDER if numbers.keys() >= set(pair)]:
         if numbers[more] <= numbers[less]:
             got = f"got {numbers[more]}, {numbers[less]}"
             raise Impossible(f"{names[more]} must be above {names[less]}, in the same unit, {got}")
 
 
-def questions(content: Mapping[str, Any], table: Mapping[str, Any]) -> dict[str, Question | Stopper | NotLearnt]:
+def _refuse_compression(numbers, names):
+    """Refuse a bridge that may buckle."""
+    if not 0 <= (stress := numbers.get("residual_stress_MPa", 0)) < math.inf:
+        raise Impossible(f"{names['residual_stress_MPa']} must be 0 or above, got {stress}")
+
+
+def questions(
+    content: Mapping[str, Any], table: Mapping[str, Any]
+) -> dict[str, Question | Stopper | Bridge | NotLearnt]:
     """Questions of the devices of a file as it is written, or why the estimate does not know them.
 
     The table has the typical surfaces, and the pairs of the paper.
@@ -242,8 +254,10 @@ def airs_of(device: Mapping[str, Any]) -> tuple[float, ...]:
 def _of_kind(name):
     """Known keys of devices of a kind, and their question as `of_numbers`."""
     kind = KINDS.get(name)
-    if kind is None or not (kind.has_tip or kind.is_patch):
-        raise NotLearnt("only cantilevers and stoppers were learnt")
+    if kind is None or not (kind.has_tip or kind.is_patch or kind.has_short_strips):
+        raise NotLearnt("only cantilevers, bridges and stoppers were learnt")
+    if kind.has_short_strips:
+        return OF_BRIDGES, of_middle
     return (OF_DEVICES, of_numbers) if kind.has_tip else (OF_STOPPERS, of_area)
 
 
@@ -258,10 +272,24 @@ def of_area(name: str, device: Mapping[str, Any], sides: Sequence, **more: Any) 
     return Stopper(name, surfaces, members, airs, area, force, touchdowns, **more)
 
 
+def of_middle(name: str, device: Mapping[str, Any], sides: Sequence, **more: Any) -> Bridge:
+    """Question about a bridge, as of `of_numbers`."""
+    more.pop("constant", None)  # counts in dry air alone, where bridges were not learnt
+    surfaces, members = zip(*sides, strict=True)
+    sizes, length = _sizes(device)
+    airs, stress = airs_of(device), to_si(device["residual_stress_MPa"], "MPa")
+    return Bridge(name, surfaces, members, airs, *sizes, stress, length, device.get("touchdowns", 1), **more)
+
+
+def _sizes(device):
+    """Thickness, gap and width of a beam, and its length if stated [m]."""
+    sizes = [to_si(device[f"{size}_um"], "um") for size in ("thickness", "gap", "width")]
+    return sizes, to_si(device["length_um"], "um") if "length_um" in device else None
+
+
 def of_numbers(name: str, device: Mapping[str, Any], sides: Sequence, **more: Any) -> Question:
     """Question by the numbers of a device in the units of files, and both surfaces with their members."""
     surfaces, members = zip(*sides, strict=True)
-    sizes = [to_si(device[f"{size}_um"], "um") for size in ("thickness", "gap", "width")]
-    length = to_si(device["length_um"], "um") if "length_um" in device else None
+    sizes, length = _sizes(device)
     airs, more = airs_of(device), more | {"added": energy_of(device, sizes[1])}
     return Question(name, surfaces, members, airs, *sizes, length, device.get("touchdowns", 1), **more)

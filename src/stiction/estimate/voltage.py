@@ -10,6 +10,7 @@ see `stiction.life.holding`.
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 from stiction.config.units import to_si
 from stiction.constants import VACUUM_PERMITTIVITY
@@ -61,3 +62,18 @@ def without_voltage(length: float, drive: float) -> float:
     """
     cube = length**-3 - drive * length
     return cube ** (-1 / 3) if cube > 0 else math.inf
+
+
+@dataclass(frozen=True)
+class Driven:
+    """Tip at a voltage."""
+
+    drive: float  #: d, zero without one [m⁻⁴]
+
+    def length(self, bare: float) -> float:
+        """Length at the voltage, from that without one [m]."""
+        return at_voltage(bare, self.drive) if self.drive else bare
+
+    def bare(self, length: float) -> float:
+        """Length without the voltage, as `without_voltage` [m]."""
+        return without_voltage(length, self.drive)

@@ -21,8 +21,8 @@ _LONG = 24
 _WORD = r"[^\W\d].*|\W?"
 #: Comments on lines of their own, and indentation.
 _FOR_READERS = re.compile(r"^ *(?://.*|/\*\*.*\*/)\n|^ +", re.MULTILINE)
-#: Space between the thousands of a number, and hyphen that is its sign.
-_THOUSANDS, _SIGN = re.compile(r"(?<=\d) (?=\d{3}\b)"), re.compile(r"(?<![\w.)])-(?=\d)")
+#: Space between the thousands of a number, and hyphen that is its sign or stands between two terms.
+_THOUSANDS, _SIGN = re.compile(r"(?<=\d) (?=\d{3}\b)"), re.compile(r"(?<![\w.)])-(?=\d)|(?<=[\w)] )-(?= [\w(])")
 
 
 class _Loader(FileSystemLoader):
@@ -45,18 +45,29 @@ def _kinds(cells):
     return ["text" if (one.len() > _LONG).any() else "word" * bool(one.fullmatch(_WORD).all()) for one in columns]
 
 
-def _typeset(text):
+def with_minus(text: str) -> str:
+    """Text with signs of minus in place of hyphens before numbers and between terms.
+
+    Examples
+    --------
+    >>> with_minus("-5.3 %, 1 - (1 - p)^n, from 2026-11-30 on, B2-like")
+    '−5.3 %, 1 − (1 − p)^n, from 2026-11-30 on, B2-like'
+    """
+    return _SIGN.sub("\N{MINUS SIGN}", text)
+
+
+def typeset(text: Any) -> str:
     """Text, or a number, with signs of minus, in which no line ends between the thousands of a number.
 
     Examples
     --------
-    >>> _typeset("-5.3 % of 20 000, from 2026-11-30 on").replace("\N{NO-BREAK SPACE}", "_")
+    >>> typeset("-5.3 % of 20 000, from 2026-11-30 on").replace("\N{NO-BREAK SPACE}", "_")
     '−5.3 % of 20_000, from 2026-11-30 on'
     """
-    return _SIGN.sub("\N{MINUS SIGN}", _THOUSANDS.sub("\N{NO-BREAK SPACE}", str(text)))
+    return with_minus(_THOUSANDS.sub("\N{NO-BREAK SPACE}", str(text)))
 
 
-_ENVIRONMENT.filters |= {"kinds": _kinds, "typeset": _typeset}
+_ENVIRONMENT.filters |= {"kinds": _kinds, "typeset": typeset}
 _ENVIRONMENT.policies["json.dumps_kwargs"] = {"sort_keys": True, "separators": (",", ":")}
 
 

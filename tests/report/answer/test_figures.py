@@ -38,7 +38,7 @@ def test_what_decides_is_in_full_colour_and_the_other_airs_are_dashed():
     answer = answered()
     (panel,) = risk({"C1": answer}).axes
     found = lines_of(panel)
-    decides, other = found["all airs, RH 0.92 decides"], found["RH 0.44"]
+    decides, other = found["all airs, mostly RH 0.92"], found["RH 0.44"]
     np.testing.assert_allclose(decides.get_xydata(), np.transpose([1e6 * SIZES, answer.curve[0]]))
     np.testing.assert_allclose(other.get_ydata(), answer.airs[0].curve[0])
     assert len(found) == 2, "the air that decides is the curve of all"
@@ -85,7 +85,7 @@ def test_legends_are_below_all_panels_and_name_what_is_drawn_once():
     ]
     for panel in figure.axes:
         airs = [text.get_text() for text in panel.get_legend().get_texts()]
-        assert airs == ["RH 0.44", "all airs, RH 0.92 decides", "its 95 % band"]
+        assert airs == ["RH 0.44", "all airs, mostly RH 0.92", "its 95 % band"]
         drawn, (*_, shown) = panel.collections[0], panel.get_legend().legend_handles
         np.testing.assert_array_equal(shown.get_facecolor(), drawn.get_facecolor()[0])
 
@@ -145,11 +145,11 @@ def test_the_ladder_has_a_row_for_each_step_and_the_curve_beside_it():
     steps, stuck = ladder(answered()).axes
     assert beside(steps) == [
         "estimate 160 µm",
-        "error of the simulation 155 µm (-10.0 %)",
-        "uncertainty of the inputs 140 µm (-10.0 %)",
+        "error of the simulation 155 µm (−10.0 %)",
+        "uncertainty of the inputs 140 µm (−10.0 %)",
     ]
     assert not steps.texts, "nothing lies on bars and lines"
-    assert "all airs, RH 0.92 decides" in lines_of(stuck)
+    assert "all airs, mostly RH 0.92" in lines_of(stuck)
 
 
 @pytest.mark.parametrize("known", [3, 1])

@@ -92,7 +92,7 @@ def test_dry_air_is_in_words():
     stopped = screen_of(stopper_answer(forces), STOPPER)
     released = screen_of(beam_answer(section, {0.0: of_length(400e-6)}), section)
     for shown in (stopped, released):
-        assert shown.points["What decides"].startswith("Dry air, ")
+        assert shown.points["What decides"].startswith(("Dry air, the worst", "Dry air, stuck by"))
         assert shown.cells.RH[0] == "dry"
     assert " in dry air (95 % confidence, if the model holds)." in beam_page(CANTILEVER, {0.0: safe()}).summary.basis[0]
 
@@ -314,6 +314,26 @@ def test_what_decides_a_stopper_is_the_air_of_the_largest_force_in_its_table():
             shown = screen_of(stopper_answer(forces.assign(restoring_force=force)), STOPPER)
             worst = shown.cells.RH[shown.cells["force to build [µN]"].astype(float).idxmax()]
             assert shown.points["What decides"].startswith("Dry air, " if worst == "dry" else f"RH {worst}, ")
+
+
+def test_an_air_that_is_stricter_alone_is_named_beside_the_one_that_decides_together():
+    forces = stopper_dataset().assign_coords(humidity=[0.44, 0.67])
+    answer = stopper_answer(forces)
+    decides = answer.stated_steps[-1].humidity
+    assert ", the worst of the stated airs." in words.decides(answer)
+    (strictest,) = (air for air in answer.airs if air.humidity == decides)
+    airs = tuple(air if air is strictest else replace(air, build=1.01 * strictest.build) for air in answer.airs)
+    (other,) = {0.44, 0.67} - {decides}
+    said = words.decides(replace(answer, airs=airs))
+    assert said.startswith(f"RH {decides}, in most draws of all stated airs together (alone, RH {other} is stricter).")
+
+
+@pytest.mark.parametrize(
+    ("touchdowns", "head"), [(1, "P(stuck) at 275 µm"), (1000, "P(stuck) after 1000 touchdowns at 275 µm")]
+)
+def test_the_head_of_a_fraction_has_the_touchdowns_that_it_counts(touchdowns, head):
+    section = CANTILEVER | {"length_um": 275, "touchdowns": touchdowns}
+    assert screen_of(beam_answer(section, {0.67: of_length(275e-6)}), section).cells.columns[-1] == head
 
 
 def test_a_bridge_has_the_budget_of_its_middle_and_not_that_of_tips():

@@ -224,7 +224,7 @@ def test_a_long_table_is_folded():
 
 
 def test_a_saved_page_ends_with_date_version_and_commit_of_the_last_run_and_differs_in_nothing_else(tmp_path):
-    save, page, lines = pages.STAGES[0].save, Page("S1", {}, ["Build it."]), []
+    save, page, lines = pages.STAGES[0].save, Page("S1", {}, ["Build it, -5.3 %."]), []
     for day, commit in (("01", "abc"), ("02", "def")):
         run = {"versions": {"stiction": "1.2"}, "config": {}}
         runs = [run | {"started": f"2026-03-{day}T08:30:59+00:00"} for day in ("31", day)]
@@ -240,7 +240,7 @@ def test_a_saved_page_ends_with_date_version_and_commit_of_the_last_run_and_diff
             assert part in "".join(lines[-1])
         assert "mine.gwy" not in "".join(lines[-1]), "is no code"
     assert sum(one != other for one, other in zip(*lines, strict=True)) == 2
-    assert (tmp_path / "devices" / "S1.txt").read_text(encoding="utf-8") == "Build it.\n"
+    assert (tmp_path / "devices" / "S1.txt").read_text(encoding="utf-8") == "Build it, −5.3 %.\n"
 
 
 def test_text_is_shown_as_it_is():

@@ -11,7 +11,7 @@ from stiction.devices.limits import rules as limits
 from stiction.report.devices import sentences, warnings_page
 from stiction.report.format import bounding
 from stiction.report.limits import pages
-from stiction.report.limits.words import text, texts
+from stiction.report.limits.words import lines_with_numbers, text, texts
 from stiction.stages.answer.answer import layout
 
 
@@ -62,6 +62,17 @@ def test_the_page_of_a_device_lists_them():
         if "a slope of" in one
     ]
     assert any(abs(slope / steepest(20e-6, 1e-6 * built) - 1) < 0.01 for slope in slopes)
+
+
+def test_a_length_to_build_shares_the_line_of_other_steep_lengths_and_is_named():
+    steepest_of_chart, built = (limits.large_rotation(20e-6, length) for length in (171e-6, 200e-6))
+    chart = {"chart": [steepest_of_chart], "other": [limits.large_rotation(20e-6, 180e-6)]}
+    (line,) = lines_with_numbers(chart, [built])
+    assert line == f"(1) and (2) {text(steepest_of_chart)} This is the worst of 3. At 200 µm the slope is 0.15."
+    assert lines_with_numbers(chart, [steepest_of_chart]) == lines_with_numbers(chart), "it has a number"
+    assert lines_with_numbers({}, [built]) == [text(built)]
+    (worse,) = lines_with_numbers({"chart": [built]}, [steepest_of_chart])
+    assert worse == f"(1) {text(steepest_of_chart)} This is the worst of 2.", "the worst is in the sentence"
 
 
 def test_the_index_and_the_last_lines_count_the_warnings_of_the_page():

@@ -18,6 +18,7 @@ from stiction.plan.graph import Graph, Results
 from stiction.plan.plan import Plan
 from stiction.report.at_once import tables
 from stiction.run import storage
+from stiction.run.variables import described
 from stiction.stages.at_once import beside
 from stiction.stages.devices.opening import EITHER
 
@@ -164,7 +165,7 @@ def test_rows_of_the_table_have_all_inputs_from_which_the_estimate_follows():
     assert {cell for cell in table.cells["stuck"]} == {"1 in 100", "1 in 1000", "1 in 10 000"}
 
 
-def test_only_cantilevers_and_stoppers_have_it():
+def test_only_cantilevers_bridges_and_stoppers_have_it():
     bridge = BEAM | {"kind": "bridge", "residual_stress_MPa": 50}
     stopper = {"kind": "stopper", "pair": "mine", "contact_um": [3, 3], "restoring_force_uN": 20, "humidities": [0.6]}
     dry = BEAM | {"humidities": ["dry"]}
@@ -173,10 +174,10 @@ def test_only_cantilevers_and_stoppers_have_it():
     more = {"R": bridge, "S": stopper, "D": dry, "P": probe, "T": stopper | {"humidities": ["dry"]}}
     plan = Plan(stiction.load(FILE, {"devices": more}))
     graph = Graph(plan)
-    assert beside.estimated(plan, beside.LENGTHS) == ["D", "Lever"]
+    assert beside.estimated(plan, beside.LENGTHS) == ["D", "Lever", "R"]
     assert beside.estimated(plan, beside.FORCES) == ["S", "T"]
     read = {name: "estimate" in graph.job(f"devices/{name}.html").inputs for name in plan.devices.sections}
-    assert read == {"Lever": True, "R": False, "S": True, "D": True, "P": False, "T": True}
+    assert read == {"Lever": True, "R": True, "S": True, "D": True, "P": False, "T": True}
     without = Plan(stiction.load())
     assert not [
         job
@@ -184,6 +185,26 @@ def test_only_cantilevers_and_stoppers_have_it():
         if "estimate" in job.names[0] and "_estimate" in job.stage.name
     ]
     assert [job for job in graph.needed("devices") if job.stage.name == "table_estimate"]
+
+
+def test_the_estimate_of_a_bridge_is_that_of_the_file_beside_the_length_of_its_middle():
+    bridge = BEAM | {"kind": "bridge", "residual_stress_MPa": 50, "thickness_um": 2, "gap_um": 2}
+    graph = Graph(Plan(stiction.load(FILE, {"devices": {"R": bridge}})))
+    stated = settings_of(graph, "R")
+    assert stated["asked"]["residual_stress_MPa"] == 50
+    assert "residual_stress_MPa" not in settings_of(graph)["asked"], "the control: a cantilever has the same settings"
+    run = safe("bridge", longest=250e-6)
+    found = beside.compute({0.6: run}, in_si(beside.Settings, stated))
+    exact = {"members": ({}, {}), "touchdowns": 1}
+    asked = replace(questions(FILE | {"devices": {"R": bridge}}, known()[0])["R"], **exact)
+    for row in answer(asked, *known()).rows[1:4]:
+        at = found.isel(humidity=0).sel(share=row.fraction)
+        numbers = [float(at[name]) for name in ("estimate", "low", "high")]
+        np.testing.assert_allclose(numbers, [row.length, *row.intervals["90"]], rtol=1e-7)
+    np.testing.assert_array_equal(found.length.isel(humidity=0), run.estimate.isel(shape=0))
+    assert described(found, beside.LENGTHS).residual_stress.units == "Pa"
+    rows = list(csv.DictReader(io.StringIO(tables.table({"Lever": dataset({0.6: safe()}), "R": found}).csv)))
+    assert {row["device"]: row["residual_stress_MPa"] for row in rows} == {"Lever": "", "R": "50.0"}
 
 
 @pytest.mark.parametrize(

@@ -3,16 +3,18 @@
 import argparse
 import json
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
+from typing import Any, NamedTuple
 
 from stiction.command.output_streams import say
 from stiction.config.units import from_si
 from stiction.contact.air import DRY, DRY_AIR, Air
 from stiction.estimate.answer import CHOSEN, FRACTIONS, Estimate, answer
+from stiction.estimate.bridge import Bridge
 from stiction.estimate.force import Stopper
 from stiction.estimate.length import Impossible, NotLearnt
-from stiction.estimate.question import Question, of_area, of_numbers, questions, refuse_impossible, surface
+from stiction.estimate.question import Question, of_area, of_middle, of_numbers, questions, refuse_impossible, surface
 from stiction.estimate.table import content, known
 
 #: Options of a device on a described surface: key in a file, metavar, help, default.
@@ -29,6 +31,7 @@ OPTIONS = {
     "width": ("width_um", "UM", "width of the beam (default: 30)", 30.0),
     "length": ("length_um", "UM", "length of the beam, for the probability that it sticks", None),
     "voltage": ("voltage_V", "V", "voltage in contact; needs --dielectric", None),
+    "stress": ("residual_stress_MPa", "MPA", "tensile stress of a bridge, in place of a cantilever", None),
     "force": ("restoring_force_uN", "UN", "restoring force of a stopper, for the probability that it sticks", None),
 }
 _OF_SURFACE = ("rms", "like", "hurst", "corner", "cutoff", "skewness", "kurtosis")
@@ -125,11 +128,11 @@ def _of_files(files):
 
 def _of_options(arguments, library):
     """Question by the options alone."""
-    of_kind, of_other, other = _OF_STOPPER if arguments.contact else _OF_BEAM
-    needed = ("rms", "rh", *of_kind) + ("dielectric",) * (arguments.voltage is not None)
-    for name in of_other:
+    kind = _kind_of(arguments)
+    needed = ("rms", "rh", *kind.needed) + ("dielectric",) * (arguments.voltage is not None)
+    for name, others in kind.strange.items():
         if getattr(arguments, name) is not None:
-            raise Impossible(f"--{name} is for {other} alone")
+            raise Impossible(f"--{name} is for {others} alone")
     for name in needed:
         if getattr(arguments, name) is None:
             raise Impossible(f"--{name} is missing{_HINT}")
@@ -140,8 +143,31 @@ def _of_options(arguments, library):
     if arguments.hurst is not None and arguments.hurst > 1:
         raise Impossible(f"--hurst must be at most 1, got {arguments.hurst}")
     sides = [surface({"like": LIKE} | entry, library), surface(library[OPPOSITE], library)]
-    asked_of = of_area if arguments.contact else of_numbers
-    return asked_of(_NAME, device, sides, averaged=arguments.like is None)
+    return kind.of(_NAME, device, sides, averaged=arguments.like is None)
+
+
+class _Kind(NamedTuple):
+    """Kind of a device that options state."""
+
+    name: str  #: in a file
+    of: Callable[..., Any]  #: question, as `stiction.estimate.question.of_numbers`
+    needed: tuple[str, ...]  #: options that it needs
+    strange: dict[str, str]  #: options of other kinds, and these in words
+
+
+#: Kinds of devices that options state.
+_CANTILEVER = _Kind("cantilever", of_numbers, ("thickness", "gap"), {"force": "stoppers"})
+_OF_CANTILEVERS = dict.fromkeys(("voltage", "dielectric"), "cantilevers")
+_BRIDGE = _Kind("bridge", of_middle, ("thickness", "gap"), _CANTILEVER.strange | _OF_CANTILEVERS)
+_OF_BEAMS = dict.fromkeys(("thickness", "gap", "length"), "beams") | {"stress": "bridges"}
+_STOPPER = _Kind("stopper", of_area, ("contact",), _OF_BEAMS | _OF_CANTILEVERS)
+
+
+def _kind_of(arguments):
+    """Kind of the device of some options."""
+    if arguments.contact:
+        return _STOPPER
+    return _CANTILEVER if arguments.stress is None else _BRIDGE
 
 
 def _stated(arguments):
@@ -160,7 +186,7 @@ def _stated(arguments):
 def file_of(arguments: argparse.Namespace) -> str:
     """File with the device of some options, for a run."""
     entry, device = _stated(arguments)
-    kind = "stopper" if arguments.contact else "cantilever"
+    kind = _kind_of(arguments).name
     air = {"humidities": [Air(each).name for each in arguments.rh]}
     pair = {"beam": "Mine", "substrate": OPPOSITE, "gap_um": arguments.gap or _GAP} | air
     return "\n".join(
@@ -186,9 +212,6 @@ def _humidity(word):
         raise argparse.ArgumentTypeError(f"must be {DRY}, or numbers above 0 and below 1, got {word}") from None
 
 
-#: Options that a device needs, those of other devices, and these.
-_OF_BEAM = ("thickness", "gap"), ("force",), "stoppers"
-_OF_STOPPER = ("contact",), ("thickness", "gap", "length", "voltage", "dielectric"), "cantilevers"
 #: Options beside `OPTIONS`, and what they are without being stated. Keys of all by their options.
 _MORE = {"contact": "contact_um", "dielectric": "dielectric", "rh": "humidities", "touchdowns": "touchdowns"}
 _DEFAULTS = {"width": 30.0, "touchdowns": 1}
@@ -196,7 +219,7 @@ _NAMES = {key: f"--{name}" for name, key in [*((name, each[0]) for name, each in
 _NAMES |= dict.fromkeys(("thickness_nm", "permittivity"), "--dielectric")
 #: What a file needs that options do not state: the typical surface, and a gap beside that of a stopper [µm].
 LIKE, _GAP = "B2", 2.0
-_HINT = "; a cantilever needs --rms --rh --thickness --gap, a stopper --rms --rh --contact"
+_HINT = "; a cantilever needs --rms --rh --thickness --gap, a bridge --stress as well, a stopper --rms --rh --contact"
 #: Name of a device without a file.
 _NAME = "The device"
 #: What a size is by its unit, and the symbol of this.
@@ -240,6 +263,6 @@ def _percent(fraction, most):
     return f"{'at least ' * (fraction >= most)}{float(f'{100 * min(fraction, _NEARLY_ALL):.2g}'):g} %"
 
 
-def _number(size: float, question: Question | Stopper) -> str:
+def _number(size: float, question: Question | Stopper | Bridge) -> str:
     """Size in the unit of a question, with three digits."""
     return f"{float(f'{from_si(size, question.unit):.3g}'):g}"

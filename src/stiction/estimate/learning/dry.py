@@ -78,8 +78,8 @@ SETS = {
     "decide_typical": _effort("decide_typical", 20, 40, 1, 200, (20, 32)),
     "decide_any": _effort("decide_any", 22, 40, 1, 200, (20, 32)),
     "check_paper": _effort("check_paper", 6, 6, 1, 200, (20, 32)),
-    "check_typical": _effort("check_typical", 12, 12, 1, 200, (20, 32)),
-    "check_any": _effort("check_any", 12, 12, 1, 200, (20, 32)),
+    "check_typical": _effort("check_typical", 12, 7, 1, 200, (20, 32)),
+    "check_any": _effort("check_any", 8, 8, 1, 200, (20, 32)),
     "control": _effort("control", 1, 1, 1, 3, (2, 12)),
 }
 

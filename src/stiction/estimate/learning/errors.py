@@ -11,7 +11,10 @@ from scipy.special import betaincinv
 
 from stiction.devices.risk import CONFIDENCE
 from stiction.estimate.answer import difficulty
+from stiction.estimate.bridge import lengths as lengths_of_bridges
 from stiction.estimate.force import reciprocals
+from stiction.estimate.learning.bridge_rows import TAIL, of_middle, with_changes
+from stiction.estimate.learning.bridge_rows import states_of as states_of_bridges
 from stiction.estimate.learning.design import Point
 from stiction.estimate.learning.patches import FOLDER
 from stiction.estimate.learning.rows import change_of, of_forces, of_tips, patches_of, states_of, stored
@@ -71,6 +74,14 @@ def tested_forces(folder: Path, sets: str, modulus: float, score: float, process
         changed = change_of(numbers).of(pressures)(pressures)
         true = lengths_of(of_forces(changed, patch), -math.log(patch.flooded_force))
         yield beside(point, true, score, lambda of=patch, at=point: reciprocals(of, *processes(at)))
+
+
+def tested_bridges(folder: Path, sets: str, modulus: float, score: float, processes: Processes) -> Iterator[Tested]:
+    """Lengths of bridges without stress that are held as well as those under it, of some sets, as `tested`."""
+    for point, numbers in with_changes(folder, sets, TAIL):
+        state, *_ = states_of_bridges(point, numbers, modulus)
+        true = lengths_of(of_middle(state, numbers["changed"]), math.log(state.flooded_length))
+        yield beside(point, true, score, lambda of=state, at=point: lengths_of_bridges(of, *processes(at)))
 
 
 def beside(point: Point, true: Lengths, score: float, estimate: Callable[[], Lengths]) -> Tested:

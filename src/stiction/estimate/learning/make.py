@@ -16,10 +16,16 @@ from stiction.config.units import to_si
 from stiction.constants import WATER_MOLAR_VOLUME, WATER_SURFACE_ENERGY
 from stiction.estimate import dry as of_dry_air
 from stiction.estimate.answer import CHOSEN, CONFIDENCES
+from stiction.estimate.bridge import COORDINATES as OF_BRIDGES
 from stiction.estimate.learning import dry, dry_patches, dry_rows, patches
+from stiction.estimate.learning.bridge_rows import rows_of_changes, rows_of_middles
+from stiction.estimate.learning.bridges import EVERY, TrainingStrips, sizes_of
+from stiction.estimate.learning.bridges import RANGES as RANGES_OF_BRIDGES
+from stiction.estimate.learning.bridges import base as base_of_bridges
+from stiction.estimate.learning.bridges import plan_of as plan_of_bridge
 from stiction.estimate.learning.design import FILMS, SurfaceLaw
 from stiction.estimate.learning.design import SIDES as SIDES_OF_PATCHES
-from stiction.estimate.learning.errors import Tested, conformal, rest_of, scores, tested, tested_forces
+from stiction.estimate.learning.errors import Tested, conformal, rest_of, scores, tested, tested_bridges, tested_forces
 from stiction.estimate.learning.fit import Fitted, fitted, group, rounded
 from stiction.estimate.learning.rows import (
     OF_FULL,
@@ -62,10 +68,12 @@ def table_of(folder: Path) -> dict[str, Any]:
         "tips": tips.content,
         "full": full.content,
         "stoppers": stoppers_of(folder, modulus),
+        "bridges": bridges_of(folder, modulus),
         "dry": in_dry_air(folder, modulus),
     }
     table |= errors_of(tested, folder, modulus, tips, full)
     control = {"slopes": control_of_slopes(), "forces": control_of_forces(), "patches": control_of_patches()}
+    control["bridges"] = control_of_bridges()
     return table | {"control": control}
 
 
@@ -96,6 +104,20 @@ def stoppers_of(folder: Path, modulus: float) -> dict[str, Any]:
     return own | errors_of(tested_forces, folder, modulus, forces, full)
 
 
+def bridges_of(folder: Path, modulus: float) -> dict[str, Any]:
+    """Part of the table about bridges."""
+    middle = fitted(rows_of_middles(folder, "learn", modulus), "at_2", range(len(OF_BRIDGES)))
+    full = fitted(rows_of_changes(folder, "learn", modulus), "shift", OF_RATIO, 90)
+    own = {
+        "every": EVERY,
+        "ranges": RANGES_OF_BRIDGES,
+        "coordinates": OF_BRIDGES,
+        "middle": middle.content,
+        "full": full.content,
+    }
+    return own | errors_of(tested_bridges, folder, modulus, middle, full)
+
+
 def _control_point():
     """Point of the control numbers, its plan, and its film."""
     (point,) = SETS["control"].all
@@ -121,6 +143,14 @@ def control_of_patches() -> list[float]:
     sides = patches.sides_of(point, effort.seed, effort.law)
     plan = patches.plan_of(point, sides, patches.base())
     return patches.forces_of(point, plan, np.array([height]), effort.patches, effort.seed)[0].tolist()
+
+
+def control_of_bridges() -> list[float]:
+    """Lengths of a few bridges on few strips, as `control_of_slopes`."""
+    point, _, height = _control_point()
+    effort = SETS["control"]
+    strips = TrainingStrips.of(point, plan_of_bridge(point, base_of_bridges()), 10 * effort.patches, effort.seed)
+    return strips.lengths(height, sizes_of(point, "control")[0], effort.patches).tolist()
 
 
 #: Errors of all surfaces of some sets, as `stiction.estimate.learning.errors.tested`.

@@ -53,9 +53,14 @@ def states_of(point: Point, airs: np.ndarray, modulus: float) -> list[list[TipSt
 
 def of_tips(slopes: np.ndarray) -> dict[str, float]:
     """Quantities of tips that stick up to some slopes, or of patches up to some forces, over that of flooded flats."""
-    lengths = 1 / np.sort(slopes)[::-1]
+    return of_lengths(1 / np.sort(slopes)[::-1])
+
+
+def of_lengths(lengths: np.ndarray) -> dict[str, float]:
+    """Quantities of lengths (n,), of which some may be infinite."""
     line = fit_tail(lengths, max(PART, FEW / len(lengths)))
-    first, second = np.log(np.quantile(lengths, ndtr(SCORES[:2])))
+    with np.errstate(invalid="ignore"):  # between infinite lengths
+        first, second = np.log(np.quantile(lengths, ndtr(SCORES[:2])))
     return dict(zip(NAMES, (first, second, line.logarithm(ndtr(SCORES[2])), line.slope), strict=True))
 
 

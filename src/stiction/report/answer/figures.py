@@ -15,6 +15,7 @@ from stiction.devices.risk import one_in
 from stiction.plan.names import by_name
 from stiction.report.answer import tables, words
 from stiction.report.format import safe_size
+from stiction.report.html import with_minus
 from stiction.report.style import (
     BUILD,
     DOUBLE,
@@ -83,7 +84,7 @@ def _steps(panel: Axes, answer):
 def _label_of_row(answer, row):
     """Cause of a row of the ladder with its size and change."""
     step = answer.known_steps[row]
-    change = f" ({100 * (step.factor - 1):+.1f} %)" if row else ""
+    change = with_minus(f" ({100 * (step.factor - 1):+.1f} %)") if row else ""
     return f"{textwrap.fill(words.CAUSES[step.cause][0], _WIDE)}\n{safe_size(step.size, answer.sought)}{change}"
 
 
@@ -150,7 +151,7 @@ def _stuck(panel: Axes, answer, stricter=_IN_TITLES):
             colour = humidity_colour(air.humidity)
             panel.plot(sizes, air.curve[0], "--", color=colour, alpha=0.8, linewidth=1, label=Air(air.humidity).words)
     colour, decides = humidity_colour(answer.together.humidity), Air(answer.together.humidity).words
-    label_of_airs = f"all airs, {decides} decides" if len(answer.airs) > 1 and np.isfinite(answer.share) else decides
+    label_of_airs = f"all airs, mostly {decides}" if len(answer.airs) > 1 and np.isfinite(answer.share) else decides
     panel.plot(sizes, expected, color=colour, linewidth=1.6, label=label_of_airs)
     style = {"color": colour, "alpha": 0.2, "linewidth": 0}
     panel.fill_between(sizes, *band, where=_resolved(band[1]), label="its 95 % band", **style)

@@ -213,9 +213,8 @@ def decides(answer: Answer) -> str:
     last, largest = answer.stated_steps[-1], answer.largest_step
     held = END_STATES[last.shape].by if last.shape in END_STATES else "liquid that dries"
     held = "tip" if answer.is_by_tip else held
-    stuck = "" if answer.sought is FORCE else f", stuck by {'the ' if held != 'beam or tip' else ''}{held}"
-    worst = ", the worst of the stated airs" * (len(answer.airs) > 1)
-    sentence = f"{_air(answer, last.humidity)}{worst}{stuck}."
+    stuck = "" if answer.sought.more_is_better else f", stuck by {'the ' if held != 'beam or tip' else ''}{held}"
+    sentence = f"{_air(answer, last.humidity)}{_among_airs(answer)}{stuck}."
     if answer.between and _is_stricter(answer, answer.between.size):
         sentence += f" Between them, RH {answer.between.humidity:.2g} is worse."
     change = largest.factor - 1
@@ -223,6 +222,19 @@ def decides(answer: Answer) -> str:
         return sentence
     by = f"{'+' if change > 0 else '-'}{in_percent(abs(change))} of the {answer.sought.name}"
     return f"{sentence} Largest step: {CAUSES[largest.cause][1]}, {by}."
+
+
+def _among_airs(answer):
+    """How the air that decides in most draws compares with the other stated airs, each alone as the table has it."""
+    if len(answer.airs) == 1:
+        return ""
+    decides, sign = answer.stated_steps[-1].humidity, answer.sought.sign
+    build = next(air.build for air in answer.airs if air.humidity == decides)
+    stricter = [Air(air.humidity).words for air in answer.airs if sign * air.build < sign * build]
+    if not stricter:
+        return ", the worst of the stated airs"
+    alone = f"alone, {listed(stricter)} {'is' if len(stricter) == 1 else 'are'} stricter"
+    return f", in most draws of all stated airs together ({alone})"
 
 
 def measure(answer: Answer) -> str:
@@ -255,6 +267,7 @@ def by_test_beams(answer: Answer) -> list[str]:
 def of_airs(answer: Answer) -> list[dict[str, str]]:
     """Rows of the table of a first screen: size to build and P(stuck) in each stated air alone."""
     rows, sought = [], answer.sought
+    after = f" after {answer.touchdowns} touchdowns" * (answer.touchdowns > 1 and not answer.stays)
     for air in answer.airs:
         row = {"RH": humidity_text(air.humidity)} | _celsius(answer, air)
         row |= {"touchdowns": f"{answer.touchdowns_in(air.humidity):.5g}"} if answer.stays else {}
@@ -262,7 +275,7 @@ def of_airs(answer: Answer) -> list[dict[str, str]]:
         if np.isfinite(air.without_tip):
             row["if the tip cannot touch [µm]"] = _size(answer, air.without_tip)
         if air.stuck is not None:
-            row[f"P(stuck) at {answer.size / sought.scale:.4g} {sought.shown}"] = stuck_in_words(air.stuck)
+            row[f"P(stuck){after} at {answer.size / sought.scale:.4g} {sought.shown}"] = stuck_in_words(air.stuck)
         rows.append(row)
     return rows
 

@@ -62,8 +62,8 @@ SIZES = {
         "µm",
         ".0f",
         "estimates at once beside the run",
-        "Lengths at which a fraction sticks, by beam or tip: of the run with its standard error, and of stiction "
-        f"estimate. {_OF_ALL}",
+        "Lengths at which a fraction sticks, by beam, tip or middle: of the run with its standard error, and of "
+        f"stiction estimate. {_OF_ALL}",
     ),
     "force": Sizes(
         FORCES,
@@ -81,7 +81,7 @@ SIZES = {
 _TITLE = "The estimate at once beside the run"
 _MISSING = "the estimate refuses this air, or too few of the simulated devices stick for a size"
 #: Units of the inputs of the estimate, for those that have one.
-_SIZES = dict.fromkeys(("thickness", "gap", "width"), "um") | {"hamaker_constant": "zJ"}
+_SIZES = dict.fromkeys(("thickness", "gap", "width"), "um") | {"hamaker_constant": "zJ", "residual_stress": "MPa"}
 _OF_SIDES = {"rms": "nm", "skewness": "", "kurtosis": "", "plateau": "nm4", "floor": "nm4"}
 _OF_SIDES |= dict.fromkeys(("corner", "cutoff"), "rad_per_um")
 #: Words by whether the size of the run is inside the interval of the estimate.

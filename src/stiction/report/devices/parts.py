@@ -88,7 +88,7 @@ def _parts_of_beam(name, section, data, answer):
         picture = figures_devices.chart(axis, warnings, {name: (figures_devices.gap_of(section), answer)})
         sections.append(Section("Other thicknesses and humidities", (), cells, picture))
     texts_of_cases = [*sentences.few_sentences(lengths), *sentences.prediction_sentences(lengths)]
-    listed = lines_with_numbers(warnings) + texts(sentences.shortest_warnings(section, answer))
+    listed = lines_with_numbers(warnings, sentences.shortest_warnings(section, answer))
     return sections, texts_of_cases, listed, _words_of_beam(data)
 
 

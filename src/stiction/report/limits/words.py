@@ -328,8 +328,8 @@ SENTENCES: dict[str, Callable[..., str]] = {
         f"rough surfaces they are too large, on smooth ones with gentle slopes too small, by up to "
         f"{in_percent(largest_shortfall())}."
     ),
-    "few_strips": lambda share: (
-        f"One strip of surface makes {in_percent(share)} of the squared error of full elastic contact. Others like it "
+    "few_strips": lambda part: (
+        f"One strip of surface makes {in_percent(part)} of the squared error of full elastic contact. Others like it "
         "can be missing, so that the change and its error are themselves hardly known."
     ),
     # Water
@@ -462,6 +462,12 @@ def not_modelled(
 
 #: Kinds of limits that share a line of a list, by the number that is worst.
 _WORST = {"large_rotation": "slope"}
+#: Milder limits of such a line in words.
+_ALSO = {
+    "large_rotation": lambda crack_length, slope: (
+        f"At {bounding(TO_UM * crack_length, 3, up=False)} µm the slope is {slope:.3g}."
+    ),
+}
 
 
 def line_of(limit: Limit) -> Any:
@@ -490,13 +496,21 @@ def with_numbers(limits: Mapping[Any, Iterable[Limit]]) -> list[str]:
     return [f"({k}) {sentence}" for k, sentence in enumerate(texts(distinct(limits)), 1)]
 
 
-def lines_with_numbers(limits: Mapping[Any, Iterable[Limit]]) -> list[str]:
-    """Sentences on the worst limit of each line, after the numbers of all of its limits."""
+def lines_with_numbers(limits: Mapping[Any, Iterable[Limit]], others: Iterable[Limit] = ()) -> list[str]:
+    """Sentences on the worst limit of each line, after the numbers of all of its limits.
+
+    ``others`` have no number, because no table has their size: a line that they share names it.
+    """
     numbers, lines = {limit: f"({k})" for k, limit in enumerate(distinct(limits), 1)}, {}
-    for limit in numbers:
+    for limit in dict.fromkeys([*numbers, *others]):
         lines.setdefault(line_of(limit), []).append(limit)
-    return [
-        f"{listed([numbers[limit] for limit in line])} {text(worst(line))}"
-        + f" This is the worst of {len(line)}." * (len(line) > 1)
-        for line in lines.values()
-    ]
+    return [_line(line, numbers) for line in lines.values()]
+
+
+def _line(line, numbers):
+    """Limits of a line in words, with the numbers of those that have one."""
+    said, marks = worst(line), [numbers[limit] for limit in line if limit in numbers]
+    parts = [*([listed(marks)] if marks else []), text(said)]
+    parts += [f"This is the worst of {len(line)}."] * (len(line) > 1)
+    parts += [_ALSO[limit.kind](**limit.numbers) for limit in line if limit not in numbers and limit != said]
+    return " ".join(parts)

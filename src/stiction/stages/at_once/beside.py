@@ -13,6 +13,7 @@ import xarray as xr
 
 from stiction.config.units import from_si
 from stiction.estimate.answer import CONFIDENCES, in_one_air
+from stiction.estimate.bridge import Bridge
 from stiction.estimate.complete import question_of
 from stiction.estimate.dry import POLYSILICON
 from stiction.estimate.force import Stopper
@@ -22,7 +23,6 @@ from stiction.estimate.statistics import Heights, moments_of
 from stiction.estimate.table import FILE, known
 from stiction.models import SIDES
 from stiction.plan.stage import File, Stage, select
-from stiction.stages.devices.opening import EITHER
 from stiction.stages.devices.results import results_of
 from stiction.surface.spectrum import CutoffSelfAffine
 
@@ -53,14 +53,15 @@ class AskedSurface:
 
 
 @dataclass(frozen=True)
-class AskedCantilever:
-    """Cantilever on two surfaces, as the estimate knows it."""
+class AskedBeam:
+    """Cantilever or bridge on two surfaces, as the estimate knows it."""
 
     beam: AskedSurface
     substrate: AskedSurface
     thickness: float  #: [m]
     gap: float  #: [m]
     width: float  #: [m]
+    residual_stress: float | None = None  #: of a bridge [Pa]
     hamaker_constant: float = POLYSILICON  #: of the solids in dry air [J]
 
     @property
@@ -71,20 +72,22 @@ class AskedCantilever:
     @property
     def sizes(self) -> dict[str, Any]:
         """Variables of its own numbers."""
-        return {name: ((), getattr(self, name)) for name in ("thickness", "gap", "width")} | _own(self)
+        stated = {name: getattr(self, name) for name in ("thickness", "gap", "width", "residual_stress")}
+        return {name: ((), value) for name, value in stated.items() if value is not None} | _own(self)
 
-    def question(self, air: float) -> Question:
+    def question(self, air: float) -> Question | Bridge:
         """Question about one air [-]."""
-        surfaces, exact = tuple(side.heights for side in self.sides), ({}, {})
-        sizes = self.thickness, self.gap, self.width
-        return Question("", surfaces, exact, (air,), *sizes, constant=self.hamaker_constant)
+        of = "", tuple(side.heights for side in self.sides), ({}, {}), (air,), self.thickness, self.gap, self.width
+        if self.residual_stress is None:
+            return Question(*of, constant=self.hamaker_constant)
+        return Bridge(*of, self.residual_stress)
 
 
 @dataclass(frozen=True)
 class Settings:
-    """Numbers of a cantilever, or why the estimate refuses its configuration."""
+    """Numbers of a beam, or why the estimate refuses its configuration."""
 
-    asked: AskedCantilever | None = None
+    asked: AskedBeam | None = None
     refused: str = ""
 
 
@@ -116,7 +119,7 @@ class AskedStopper:
 def _own(asked):
     """Variable of a Hamaker constant that differs from that of polysilicon."""
     own = asked.hamaker_constant
-    return {} if own == POLYSILICON else {"hamaker_constant": ((), own, {"units": "J"})}
+    return {} if own == POLYSILICON else {"hamaker_constant": ((), own)}
 
 
 @dataclass(frozen=True)
@@ -135,9 +138,9 @@ def compute(lengths: Mapping[float, xr.Dataset], settings: Settings) -> xr.Datas
     """Lengths of a run and of the estimate, by humidity and fraction of stuck devices."""
     runs = {}
     for air, of_air in lengths.items():
-        in_either = of_air.sel(shape=EITHER)
-        error = np.hypot(in_either.beams_error, in_either.surfaces_error.fillna(0))
-        runs[air] = in_either.estimate.where(np.isfinite(in_either.estimate)), error
+        by_any = of_air.isel(shape=-1)  # whatever holds it
+        error = np.hypot(by_any.beams_error, by_any.surfaces_error.fillna(0))
+        runs[air] = by_any.estimate.where(np.isfinite(by_any.estimate)), error
     return _beside(runs, settings, "length")
 
 
@@ -190,7 +193,7 @@ def estimated(plan: Any, stage: str) -> list[str]:
 def stage_of(plan: Any, device: str) -> str | None:
     """Stage of the estimate of a device, none of a kind that the estimate does not know."""
     kind = plan.devices.kind(device)
-    if kind.has_tip:
+    if kind.has_tip or kind.has_short_strips:
         return LENGTHS
     return FORCES if kind.is_patch else None
 
@@ -238,6 +241,6 @@ def _stage(name, kind_of_numbers, kind, result, compute):
 
 
 STAGES = (
-    _stage(LENGTHS, AskedCantilever, Settings, "lengths", compute),
+    _stage(LENGTHS, AskedBeam, Settings, "lengths", compute),
     _stage(FORCES, AskedStopper, SettingsOfStopper, "stopper", compute_stopper),
 )

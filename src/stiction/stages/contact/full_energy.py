@@ -189,8 +189,7 @@ def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], case: Case, setti
     energy, pull_off, means, reason = UNKNOWN, UNKNOWN, NOT_FOUND, ""
     try:
         strips = strips_of(surfaces, case.pair, settings)
-        random = stream(settings.seed, "full_energy", case.pair)
-        energy = levels.ratio_of_means(strips.energy, GRIDS, ALLOWED, random)
+        energy = ratio_of_energies(strips, ALLOWED, settings.seed, case.pair)
         means = StripQuantities(*np.mean([strips.values[SUMMITS, k] for k in range(len(strips.resisting))], axis=0))
         if settings.forces:
             pull_off = ratio_of_forces(strips, OF_FORCES, settings.seed, case.pair)
@@ -198,6 +197,11 @@ def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], case: Case, setti
         reason = str(failed)
     of_forces = _ratio(pull_off, ALLOWED_OF_FORCES, "pull_off_") if settings.forces else {}
     return layout(energy, means, reason).assign(of_forces)
+
+
+def ratio_of_energies(strips: Strips, error: float, seed: int, pair: str | int) -> Ratio:
+    """Ratio of the mean energy in full contact to that on summits, as `ratio_of_forces`."""
+    return levels.ratio_of_means(strips.energy, GRIDS, error, stream(seed, "full_energy", pair))
 
 
 def ratio_of_forces(strips: Strips, error: float, seed: int, pair: str | int) -> Ratio:

@@ -38,7 +38,7 @@ def stopper_answers(
         LifeRow(
             f"stuck_{float(humidity):g}",
             STICK,
-            f"probability of sticking {Air(float(humidity)).where}",
+            f"probability of sticking after one touchdown {Air(float(humidity)).where}",
             *map(float, stopper.stuck.sel(humidity=humidity, bound=["low", "high"])),
             *(np.nan, "1", "fraction of random patches, 95 %", "stage stoppers"),
         )
