@@ -96,7 +96,7 @@ class DryTip:
 
     @property
     def coordinates(self) -> tuple[float, ...]:
-        """Numbers on which the slope of a stuck tip depends, by `OF_TIPS`, logarithms but for heights' form."""
+        """Numbers on which the slope of a stuck tip depends, by ``OF_TIPS``, logarithms but for heights' form."""
         return (
             *_of_contact(self),
             math.log(self.flat_slope / self.heights.slope),
@@ -121,7 +121,7 @@ class DryPatch:
 
     @property
     def coordinates(self) -> tuple[float, ...]:
-        """Numbers on which the pull-off force depends, by `OF_PATCHES`, as those of `DryTip`."""
+        """Numbers on which the pull-off force depends, by ``OF_PATCHES``, as those of `DryTip`."""
         return *_of_contact(self), math.log(self.area * curvature(self.heights) ** 2)
 
 

@@ -126,7 +126,7 @@ def drawn(plan: Plan, name: str, number: int) -> TrainingTips:
 
 
 def slopes_of(tips: TrainingTips, changes: TipChanges | None = None) -> np.ndarray:
-    """Slopes up to which tips stick in dry air, as `TrainingTips.slopes` (stiffnesses, tips) [-]."""
+    """Slopes up to which tips stick in dry air, by stiffness and tip [-]."""
     dry = DRY_AIR.humidity
     change = None if changes is None else Correction(np.array([dry]), NONE, NONE, changes)
     at, forces = curves.tip_forces(tips.contact, dry, replace(tips.water, correction=change))
