@@ -103,7 +103,7 @@ MATRIX = [
      "stoppers_at_voltage figure_stoppers", NO_BEAM, "R1|C1|contact|devices/stoppers/"),
     ("tilt of a stopper", "devices: {S1: {tilt_deg: [0, 0.1]}}", "tilted_contact figure_stoppers", NO_BEAM, "R1|C1|devices/contact/b|devices/stoppers/"),
     ("dimples of a bridge", "devices: {R1: {length_um: 200, dimples: {number: 2, at_um: [100], height_um: 1, contact_um: [3, 3]}}}",
-     "dimples safe_lengths", OF_STOPPERS | OF_CHARTS | OF_ESTIMATE, "C1|S1|contact|cracks"),
+     "dimples safe_lengths", OF_STOPPERS | OF_CHARTS, "C1|S1|contact|cracks"),
     ("size of a scan", "devices: {C1: {uncertainty: {scan_um: 20}}}", "budget tip_budget figure_chart", (), "R1|S1|contact|chart"),
     ("an input becomes uncertain", "devices: {S1: {uncertainty: {scan_um: 10}}}", "device_slope_contact budget figure_stoppers", NO_BEAM,
      "C1|R1|slopes/contact|stoppers"),
@@ -159,7 +159,7 @@ MATRIX = [
      f" tip_solid_contact tip_choice_contact {FULL}", (), "b_NG"),
     ("strips of a beam", "devices: {C1: {strip_um: 1.2}}",
      "device_contact device_slope_contact solid_contact device_choice_summits chart tip_budget", OF_STOPPERS, "S1|R1|b_NG|tips"),
-    ("stress in a bridge", "devices: {R1: {residual_stress_MPa: 60}}", "cracks safe_lengths", OF_STOPPERS | OF_CHARTS | OF_ESTIMATE, "contact|C1|S1|chart"),
+    ("stress in a bridge", "devices: {R1: {residual_stress_MPa: 60}}", "cracks safe_lengths", OF_STOPPERS | OF_CHARTS, "contact|C1|S1|chart"),
     ("Hamaker constant of a body", BODY + "{hamaker_constant_zJ: {water: 20, dry: 200}}}",
      "device_contact tip_contact device_slope_contact solid_contact device_choice_contact plasticity"
      " tip_slope_contact tip_solid_contact tip_choice_contact process_point", (), "heights|spectrum|summits"),
