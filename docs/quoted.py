@@ -673,13 +673,14 @@ def budget(table):
 
 
 def answers(table):
-    """``build_C1``: size to build [µm, µN]; ``step_C1_inputs``: size after a step, and ``factor_C1_inputs`` [%]."""
+    """``build_C1``: size to build [µm, µN], ``stricter_C1``: what is stricter; ``step_C1_inputs``: after a step."""
     texts = {}
     for row in table.to_dict("records"):
         up, before = row["unit"] == "µN", row["after_estimate"]
         texts |= {
             f"build_{row['device']}": bounding(row["to_build"], 3, up),
             f"measure_{row['device']}": row["measure"],
+            f"stricter_{row['device']}": row["stricter"].replace("; ", " and "),
         }
         for cause in Cause:
             size = row[f"after_{cause}"]

@@ -38,8 +38,7 @@ device = stiction.Device.of(config, "C1")
 # %%
 # P(stuck) over the length
 # ------------------------
-# Bands contain the true fraction with a confidence of 95 %. The beam may be held by its whole width, or by its tip
-# alone.
+# The beam may be held by its whole width, or by its tip alone.
 
 plt.rc("font", size=15)
 figure = plt.figure(figsize=(6.4, 5.6), layout="constrained")

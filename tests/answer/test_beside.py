@@ -8,7 +8,7 @@ import xarray as xr
 from answers import BRIDGE, BUDGETS, CANTILEVER, STOPPER, STOPPERS, beam_answer, safe, stopper_answer
 from numpy.testing import assert_equal
 
-from stiction.answer.data import Answer, Between, Stay, Unasked, Verdict
+from stiction.answer.data import Answer, Between, Cause, Stay, Step, Unasked, Verdict
 from stiction.report.answer import screen, tables, words
 from stiction.report.devices import explorer
 from stiction.report.format import safe_size
@@ -118,6 +118,29 @@ def test_limits_of_forces_are_those_of_the_stated_airs_and_of_the_fine_axis():
     stopper = peaked(0.55)
     limits = beside.of_forces(stopper, 1e-2)
     assert_equal(sorted(limits), np.unique([*stopper.humidity.values, *stopper.axis.values]))
+
+
+def test_what_nothing_stated_asks_for_has_the_errors_of_the_inputs():
+    rows = [
+        ("fast", 2e-4, 2.2e-4, 1e-6),
+        ("collapse_water", 2.3e-4, 3e-4, 2e-5),
+        ("safe_length_0.5", 2.2e-4, 2.2e-4, 2e-5),
+    ]
+    rows = [LifeRow(name, "stick", name, low, high, error, "m", "", "") for name, low, high, error in rows]
+    life = xr.Dataset({field: ("answer", [getattr(row, field) for row in rows]) for field in LifeRow._fields[1:]})
+    life = life.assign_coords(answer=[row.name for row in rows])
+    steps = tuple(Step(cause, size, factor, 0.5, "tip", "", stated) for cause, size, factor, stated in STEPS)
+    answer = Answer("C1", "cantilever", 1e-3, "m", 2.1e-4, 2.2e-4, steps, ())
+    found = {limit.name: limit.size for limit in beside.unasked(life, answer)}
+    assert found == pytest.approx({"fast": 0.9 * 2.1e-4, "collapse_water": 2.3e-4 - 1.6449 * 2e-5}, rel=1e-4)
+    # Control: with exact inputs, drying would allow the size, and one that is asked for is inside the size to build.
+    assert not beside.is_short(rows[1], answer.build)
+    asked = tuple(replace(step, stated=True) for step in steps)
+    assert {limit.name: limit.size for limit in beside.unasked(life, replace(answer, steps=asked))}["fast"] == 2e-4
+
+
+#: Steps of an answer: cause, size, factor, and whether it is stated.
+STEPS = [(Cause.ESTIMATE, 2.3e-4, 1.0, True), (Cause.FAST, 2.07e-4, 0.9, False), (Cause.INPUTS, 2.1e-4, 0.95, True)]
 
 
 def test_a_mission_does_not_ask_for_all_touchdowns_in_the_worst_air():

@@ -18,6 +18,7 @@ from stiction.life import holding
 from stiction.report.answer import words
 from stiction.report.devices import explorer, voltage_views
 from stiction.report.devices.levels import SHOWN
+from stiction.report.format import safe_size
 from stiction.stages.devices import stoppers
 from stiction.stages.devices.chart import largest_error_between
 from stiction.stages.devices.safe_lengths import chosen_share
@@ -236,6 +237,6 @@ def test_a_view_of_the_simulation_alone_names_the_size_to_build_beside_its_limit
     answer = answered.of_beam(lengths, touchdowns=100)
     beside = explorer.beside(view, answer)
     assert view.words["safe"] in beside.words["safe"]
-    assert answer.in_words(answer.build) in beside.words["safe"]
+    assert safe_size(answer.build, answer.sought) in beside.words["safe"]
     assert beside.grid is view.grid
     assert explorer.beside(view, replace(answer, forbidden=("x",))) is view

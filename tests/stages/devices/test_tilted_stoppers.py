@@ -240,6 +240,6 @@ def test_table_and_sentence_state_the_tilt(tmp_path):
     assert_allclose(frame.loc["wedge", ["at_least", "at_most"]].astype(float), np.degrees([3e-4, 5e-4]), rtol=1e-12)
     (said,) = [sentence for sentence in report.sentences(dataset) if "tilt" in sentence]
     assert said.startswith("Its mean pull-off force tilted by 0.05 to 0.1°, at RH 0.44, is ")
-    assert said.endswith("Beyond a tilt of 0.0172 to 0.0286°, a longer side of its area hardly holds more.")
+    assert said.endswith("Beyond a tilt of 0.0171 to 0.0287°, a longer side of its area hardly holds more.")
     one = layout(stopper_answers(stopper_dataset(), STOPPER, tilted=tilted_dataset((0.3,), (0.1,))), STOPPER)
     assert any("tilted by 0.1°, at RH 0.44, is " in sentence for sentence in report.sentences(one))

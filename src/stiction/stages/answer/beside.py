@@ -4,15 +4,19 @@ from collections.abc import Mapping
 
 import numpy as np
 import xarray as xr
+from scipy.special import ndtri
 
-from stiction.answer.data import Answer, Between, Unasked
+from stiction.answer.data import Answer, Between, Cause, Unasked
 from stiction.answer.sought import SOUGHT
 from stiction.contact.air import is_humid
+from stiction.devices.risk import CONFIDENCE
 from stiction.stages.devices.opening import DesignedBeam
 from stiction.stages.life.answers import LifeRow, Name, answers_of
 
 #: Relative difference of sizes that rounding makes.
 _ROUNDED = 0.1 / 100
+#: Limits of a separation that is faster than evaporation.
+_IF_FAST = (Name.FAST, Name.RESTORING)
 
 
 def of_lengths(
@@ -77,18 +81,31 @@ def _strictest(factors, humidity, sign):
 
 
 def unasked(life: xr.Dataset, answer: Answer) -> tuple[Unasked, ...]:
-    """Limits of a life that do not allow the size to build of an answer, the strictest first.
+    """Limits that do not allow the size to build of an answer, the strictest first, with the errors of the inputs.
 
     A mission asks for its touchdowns in their own airs, not for all of them in the worst one.
     """
     sought, inside = answer.sought, {Name.AFTER} if answer.stays else set()
-    rows = [
-        row
+    limits = [
+        Unasked(row.name, row.what, _with_inputs(row, answer))
         for row in answers_of(life)
-        if row.unit == answer.unit and row.name not in inside and np.isfinite(row.high) and is_short(row, answer.build)
+        if row.unit == answer.unit and row.name not in inside and np.isfinite(row.high)
     ]
-    rows.sort(key=lambda row: sought.sign * unsafe_end(row))
-    return tuple(Unasked(row.name, row.what, unsafe_end(row)) for row in rows)
+    stricter = [limit for limit in limits if _is_beyond(limit.size, answer.build, sought)]
+    return tuple(sorted(stricter, key=lambda limit: sought.sign * limit.size))
+
+
+def _with_inputs(row, answer):
+    """Size that a limit of a life allows with all that is inside an answer [m, N].
+
+    ASSUME: a separation that is faster than evaporation changes the size to build as it changes the simulated limit.
+    Sizes for which liquids dry or have dried are closed forms: errors of their inputs have a confidence of 95 %.
+    """
+    fast = [step.factor for step in answer.steps if step.cause is Cause.FAST and not step.stated]
+    if row.name in _IF_FAST and fast:
+        return answer.build * fast[0]
+    error = row.error if row.name.startswith((Name.COLLAPSE, Name.RELEASED)) and np.isfinite(row.error) else 0.0
+    return unsafe_end(row) - answer.sought.sign * ndtri(CONFIDENCE) * error
 
 
 def unsafe_end(row: LifeRow) -> float:
@@ -98,5 +115,10 @@ def unsafe_end(row: LifeRow) -> float:
 
 def is_short(row: LifeRow, build: float) -> bool:
     """Whether a length or a force does not allow a size to build, beyond rounding."""
-    low, high = (build, unsafe_end(row)) if SOUGHT[row.unit].more_is_better else (unsafe_end(row), build)
+    return _is_beyond(unsafe_end(row), build, SOUGHT[row.unit])
+
+
+def _is_beyond(limit, build, sought):
+    """Whether a limit is stricter than a size to build, beyond rounding."""
+    low, high = (build, limit) if sought.more_is_better else (limit, build)
     return low * (1 + _ROUNDED) < high
