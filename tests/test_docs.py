@@ -254,10 +254,11 @@ def test_steps_of_answers_are_those_of_their_table_and_one_that_is_not_stated_st
         "unit": "µm",
         "to_build": 170.0,
         "measure": "it",
+        "stricter": "150 µm if fast; 160 µm if wet",
     }
     row |= {"after_estimate": 200.0, "after_simulation": 190.0, "after_fast": 150.0, "after_inputs": 171.0}
     found = quoted.answers(pd.DataFrame([row]))
-    assert found["build_C1"] == "170"
+    assert (found["build_C1"], found["stricter_C1"]) == ("170", "150 µm if fast and 160 µm if wet")
     assert [found[f"change_C1_{cause}"] for cause in ("simulation", "fast", "inputs")] == ["−5.0", "−21.1", "−10.0"]
 
 
