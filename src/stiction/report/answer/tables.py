@@ -174,14 +174,18 @@ def steps(answer: Answer) -> pd.DataFrame:
 
 def builds(
     datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, str]
-) -> tuple[dict[str, float], dict[str, Between | None]]:
-    """Sizes to build by device [m or N], NaN where none is stated, and stricter ones between airs, if any.
+) -> tuple[dict[str, float], dict[str, Between | None], dict[str, list[str]]]:
+    """Sizes to build by device [m or N], NaN where none is stated, stricter ones between airs, and names of limits.
+
+    These are stricter, too, though nothing stated asks for them.
 
     Parameters as of `of_datasets`.
     """
-    answers = of_datasets(datasets, warnings)
-    sizes = {name: np.nan if answer.forbidden else answer.build for name, answer in answers.items()}
-    return sizes, {name: None if answer.forbidden else answer.between for name, answer in answers.items()}
+    allowed = {name: None if answer.forbidden else answer for name, answer in of_datasets(datasets, warnings).items()}
+    sizes = {name: answer.build if answer else np.nan for name, answer in allowed.items()}
+    betweens = {name: answer.between if answer else None for name, answer in allowed.items()}
+    unasked = {name: [limit.name for limit in answer.unasked] if answer else [] for name, answer in allowed.items()}
+    return sizes, betweens, unasked
 
 
 def of_datasets(answers: Mapping[str, xr.Dataset], warnings: Mapping[str, str]) -> dict[str, Answer]:

@@ -164,10 +164,16 @@ def to_build(answer: Answer) -> str:
 
 def stricter(answer: Answer) -> list[str]:
     """Stricter sizes of airs between the stated ones, which are interpolated, and of what nothing stated asks for."""
-    at = answer.between
-    beside = [(at.size, f"between these airs (interpolated: state RH {at.humidity:.2g})")] if at else []
-    beside += [(one.size, _unless(one)) for one in answer.unasked]
-    return [f"{safe_size(size, answer.sought)} {unless}" for size, unless in beside if _is_stricter(answer, size)]
+    at, between = answer.between, []
+    if at and _is_stricter(answer, at.size):
+        between = [f"{safe_size(at.size, answer.sought)} between these airs (interpolated: state RH {at.humidity:.2g})"]
+    return between + unasked(answer)
+
+
+def unasked(answer: Answer) -> list[str]:
+    """Stricter sizes of what nothing that is stated asks for."""
+    limits = [limit for limit in answer.unasked if _is_stricter(answer, limit.size)]
+    return [f"{safe_size(limit.size, answer.sought)} {_unless(limit)}" for limit in limits]
 
 
 def _is_stricter(answer, size):

@@ -1,7 +1,7 @@
 """Life of devices: causes of contact, adhesion then, and ways to free them."""
 
 import textwrap
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
 import numpy as np
 import xarray as xr
@@ -15,7 +15,7 @@ from stiction.constants import FREE_FALL
 from stiction.contact.voltage import BREAKDOWN
 from stiction.plan.names import by_name
 from stiction.report import dots
-from stiction.report.answer import tables
+from stiction.report.answer import tables, words
 from stiction.report.format import MISSING, TO_MJ, TO_NM, TO_UM, TO_UN, bounding, fraction_between, listed, safe_size
 from stiction.report.style import (
     BUILD,
@@ -169,10 +169,10 @@ def _beside(build, sought):
 
 def judged_without(answer: Answer) -> list[str]:
     """Sentence on the stricter limits that nothing stated asks for."""
-    if not answer.unasked or answer.forbidden:
+    sizes = words.unasked(answer)
+    if not sizes or answer.forbidden:
         return []
-    named = "; ".join(f"{_label(one)}, {safe_size(one.size, answer.sought)}" for one in answer.unasked)
-    return [f"Not inside, as nothing that you stated asks for it: {named}."]
+    return [f"Not inside, as nothing that you stated asks for it: {listed(sizes)}, with the errors of the inputs."]
 
 
 def _limit(answers, length):
@@ -351,16 +351,20 @@ def _ends(answer):
 
 @styled
 def figure(
-    life: Mapping[str, xr.Dataset], builds: Mapping[str, float], betweens: Mapping[str, Between | None] | None = None
+    life: Mapping[str, xr.Dataset],
+    builds: Mapping[str, float],
+    betweens: Mapping[str, Between | None] | None = None,
+    unasked: Mapping[str, Collection[str]] | None = None,
 ) -> Figure:
     """Limits of the lives of devices as dot plots: lengths of beams, or forces of stoppers, a panel for each device.
 
-    Sizes to build are by device [m or N], as are stricter ones between stated airs. Red numbers: stricter than that.
+    Sizes to build are by device [m or N], as are stricter ones between stated airs, and names of rows that nothing
+    stated asks for and that are stricter with the errors of the inputs. Red numbers: stricter.
     """
     answers = {name: _rows(dataset) for name, dataset in life.items()}
     widest = int(_LABELS * page_width(DOUBLE) / _CHARACTER)
     rows = {
-        name: _marks(rows_of_device, builds[name], widest)
+        name: _marks(rows_of_device, builds[name], (unasked or {}).get(name, ()), widest)
         | _mark_between((betweens or {}).get(name), builds[name], _sought(life[name]), widest)
         for name, rows_of_device in answers.items()
     }
@@ -388,7 +392,7 @@ def _entries(colours, of_numbers):
     yield Line2D([], [], color=BUILD, label="size to build, all stated inside")
     if _SHORT in of_numbers:
         style = {"linestyle": "", "marker": "$12$", "markersize": 9, "color": _SHORT}
-        yield Line2D([], [], label="red number: does not allow this size", **style)
+        yield Line2D([], [], label="red: does not allow it, errors of inputs inside", **style)
 
 
 def _rows(dataset):
@@ -397,14 +401,18 @@ def _rows(dataset):
     return [answer for answer in answers_of(dataset) if answer.unit == unit and np.isfinite(answer.high)]
 
 
-def _marks(answers, build, widest):
-    """One row for each answer from its lower to its upper bound, with both numbers, by its label."""
+def _marks(answers, build, unasked, widest):
+    """One row for each answer from its lower to its upper bound, with both numbers, by its label.
+
+    Rows with the names ``unasked`` do not allow the size to build either.
+    """
     rows = {}
     for answer in answers:
         least, scale = answer.high if np.isnan(answer.low) else answer.low, SOUGHT[answer.unit].scale
         colour, low, high = _COLOURS[answer.question], least / scale, answer.high / scale
         text = " to ".join(end for end in dict.fromkeys(_ends(answer)) if end != MISSING)
-        mark = dots.Mark(low, high, colour, text, text_color=_SHORT if is_short(answer, build) else "black")
+        is_red = answer.name in unasked or is_short(answer, build)
+        mark = dots.Mark(low, high, colour, text, text_color=_SHORT if is_red else "black")
         rows[textwrap.fill(_label(answer), widest)] = [mark]
     return rows
 
