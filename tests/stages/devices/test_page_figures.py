@@ -63,7 +63,7 @@ def test_the_legend_of_a_life_names_what_is_drawn_alone(build, short):
     figure = life.figure({"C1": answers}, {"C1": build})
     names = [text.get_text() for text in figure.legends[0].get_texts()]
     assert not any("hold" in name for name in names), "no row of a beam that is a length is about what holds it"
-    assert ("red: does not allow it, errors of inputs inside" in names) == short
+    assert ("red: does not allow it, with errors of inputs" in names) == short
     assert "stick: whether it then sticks" in names, "a limit that is too short keeps the colour of its question"
     red = [text for panel in figure.axes for text in panel.texts if text.get_color() == life._SHORT]
     assert bool(red) == short

@@ -490,12 +490,16 @@ def test_limits_that_do_not_allow_the_size_to_build_are_red(found, factor):
         unit = "mN"[not is_length]
         built = Answer(name, "", 1e-3, unit, build, build, (), ())
         stricter = unasked(dataset, built)
-        names = {limit.name for limit in stricter}
+        names = {limit.name: limit.size for limit in stricter}
         (panel,) = report.figure({name: dataset}, {name: build}, {}, {name: names}).axes
+        texts = {round(text.xy[1]): text.get_text() for text in panel.texts}
+        for k, one in enumerate(shown):
+            assert ("inputs exact: " in texts[k]) == (one.name in names)
+            assert ("at most " in texts[k]) == (is_length and np.isnan(one.low)), "no safe length"
         red = [round(text.xy[1]) for text in panel.texts if text.get_color() == report._SHORT]  # noqa: SLF001
         short = [k for k, end in enumerate(ends) if (end < build if is_length else end > build)]
         assert red == [k for k, one in enumerate(shown) if k in short or one.name in names]
-        assert {shown[k].name for k in short} <= names, "errors of the inputs make limits stricter"
+        assert {shown[k].name for k in short} <= names.keys(), "errors of the inputs make limits stricter"
         if factor > 1:
             assert short
         said = " ".join(report.judged_without(replace(built, unasked=stricter)))

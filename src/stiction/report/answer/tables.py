@@ -174,8 +174,8 @@ def steps(answer: Answer) -> pd.DataFrame:
 
 def builds(
     datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, str]
-) -> tuple[dict[str, float], dict[str, Between | None], dict[str, list[str]]]:
-    """Sizes to build by device [m or N], NaN where none is stated, stricter ones between airs, and names of limits.
+) -> tuple[dict[str, float], dict[str, Between | None], dict[str, dict[str, float]]]:
+    """Sizes to build by device [m or N], NaN where none is stated, stricter ones between airs, and limits by name.
 
     These are stricter, too, though nothing stated asks for them.
 
@@ -184,7 +184,9 @@ def builds(
     allowed = {name: None if answer.forbidden else answer for name, answer in of_datasets(datasets, warnings).items()}
     sizes = {name: answer.build if answer else np.nan for name, answer in allowed.items()}
     betweens = {name: answer.between if answer else None for name, answer in allowed.items()}
-    unasked = {name: [limit.name for limit in answer.unasked] if answer else [] for name, answer in allowed.items()}
+    unasked = {
+        name: {one.name: one.size for one in answer.unasked} if answer else {} for name, answer in allowed.items()
+    }
     return sizes, betweens, unasked
 
 

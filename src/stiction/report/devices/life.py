@@ -1,7 +1,7 @@
 """Life of devices: causes of contact, adhesion then, and ways to free them."""
 
 import textwrap
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 import xarray as xr
@@ -354,17 +354,17 @@ def figure(
     life: Mapping[str, xr.Dataset],
     builds: Mapping[str, float],
     betweens: Mapping[str, Between | None] | None = None,
-    unasked: Mapping[str, Collection[str]] | None = None,
+    unasked: Mapping[str, Mapping[str, float]] | None = None,
 ) -> Figure:
     """Limits of the lives of devices as dot plots: lengths of beams, or forces of stoppers, a panel for each device.
 
-    Sizes to build are by device [m or N], as are stricter ones between stated airs, and names of rows that nothing
-    stated asks for and that are stricter with the errors of the inputs. Red numbers: stricter.
+    Sizes to build are by device [m or N], as are stricter ones between stated airs, and those by the names of rows that
+    nothing stated asks for, with the errors of the inputs. Red numbers: stricter.
     """
     answers = {name: _rows(dataset) for name, dataset in life.items()}
     widest = int(_LABELS * page_width(DOUBLE) / _CHARACTER)
     rows = {
-        name: _marks(rows_of_device, builds[name], (unasked or {}).get(name, ()), widest)
+        name: _marks(rows_of_device, builds[name], (unasked or {}).get(name, {}), widest)
         | _mark_between((betweens or {}).get(name), builds[name], _sought(life[name]), widest)
         for name, rows_of_device in answers.items()
     }
@@ -392,7 +392,7 @@ def _entries(colours, of_numbers):
     yield Line2D([], [], color=BUILD, label="size to build, all stated inside")
     if _SHORT in of_numbers:
         style = {"linestyle": "", "marker": "$12$", "markersize": 9, "color": _SHORT}
-        yield Line2D([], [], label="red: does not allow it, errors of inputs inside", **style)
+        yield Line2D([], [], label="red: does not allow it, with errors of inputs", **style)
 
 
 def _rows(dataset):
@@ -404,13 +404,17 @@ def _rows(dataset):
 def _marks(answers, build, unasked, widest):
     """One row for each answer from its lower to its upper bound, with both numbers, by its label.
 
-    Rows with the names ``unasked`` do not allow the size to build either.
+    Stricter sizes with the errors of the inputs, by the names of their rows, stand before bounds with exact inputs.
     """
     rows = {}
     for answer in answers:
         least, scale = answer.high if np.isnan(answer.low) else answer.low, SOUGHT[answer.unit].scale
         colour, low, high = _COLOURS[answer.question], least / scale, answer.high / scale
-        text = " to ".join(end for end in dict.fromkeys(_ends(answer)) if end != MISSING)
+        text, sought = " to ".join(end for end in dict.fromkeys(_ends(answer)) if end != MISSING), SOUGHT[answer.unit]
+        if np.isnan(answer.low) and not sought.more_is_better:
+            text = f"at most {text}"  # no length is known to be safe
+        if size := unasked.get(answer.name):
+            text = f"{bounding(size / scale, 3, up=sought.more_is_better)} (inputs exact: {text})"
         is_red = answer.name in unasked or is_short(answer, build)
         mark = dots.Mark(low, high, colour, text, text_color=_SHORT if is_red else "black")
         rows[textwrap.fill(_label(answer), widest)] = [mark]

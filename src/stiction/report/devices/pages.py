@@ -272,7 +272,7 @@ def with_life(page: Page, name: str, answers: xr.Dataset, answer: Answer) -> Pag
     cells = life.table({name: answers}).cells.drop(columns="device")
     build = np.nan if answer.forbidden else answer.build
     between = None if answer.forbidden else answer.between
-    unasked = () if answer.forbidden else [limit.name for limit in answer.unasked]
+    unasked = {} if answer.forbidden else {limit.name: limit.size for limit in answer.unasked}
     picture = life.figure({name: answers}, {name: build}, {name: between}, {name: unasked})
     section = Section("From the first contact to the last", (life.CAPTION,), cells, picture)
     sentences, sections = life.sentences(answers, build, bool(answer.stays)), [first, section, *others]
