@@ -66,8 +66,8 @@ _QUESTIONS = {
     HOLD: "hold: what holds it",
     FREE: "free: what frees it",
 }
-#: Colour of a limit below the size to build.
-_SHORT = "#B00020"
+#: Colours of a limit below the size to build, and of one that leaves open what is safe.
+_SHORT, _UNKNOWN = "#B00020", "0.4"
 #: Height of the legend, and largest height of the figure [in]. Share of its width for labels, and mean width of their
 #: characters [in].
 _LEGEND, _TALLEST, _LABELS, _CHARACTER = 0.3, 100.0, 0.4, 0.045
@@ -380,6 +380,9 @@ def figure(
     letter(axes[:, 0], list(rows))
     marks = [mark for rows_of_device in rows.values() for row in rows_of_device.values() for mark in row]
     entries = list(_entries({mark.color for mark in marks}, {mark.text_color for mark in marks}))
+    if not all(mark.filled for mark in marks):
+        style = {"linestyle": "", "marker": "o", "markerfacecolor": "white", "color": "0.3"}
+        entries.append(Line2D([], [], label="open: interpolated, or an upper end alone", **style))
     legend_outside(figure_of_lives, (entries, [entry.get_label() for entry in entries]), "upper", 2)
     return figure_of_lives
 
@@ -411,12 +414,13 @@ def _marks(answers, build, unasked, widest):
         least, scale = answer.high if np.isnan(answer.low) else answer.low, SOUGHT[answer.unit].scale
         colour, low, high = _COLOURS[answer.question], least / scale, answer.high / scale
         text, sought = " to ".join(end for end in dict.fromkeys(_ends(answer)) if end != MISSING), SOUGHT[answer.unit]
-        if np.isnan(answer.low) and not sought.more_is_better:
-            text = f"at most {text}"  # no length is known to be safe
+        if is_open := np.isnan(answer.low) and not sought.more_is_better:
+            text = f"at most {text}: none known safe"
         if size := unasked.get(answer.name):
             text = f"{bounding(size / scale, 3, up=sought.more_is_better)} (inputs exact: {text})"
         is_red = answer.name in unasked or is_short(answer, build)
-        mark = dots.Mark(low, high, colour, text, text_color=_SHORT if is_red else "black")
+        shade = _SHORT if is_red else _UNKNOWN if is_open else "black"
+        mark = dots.Mark(low, high, colour, text, filled=not is_open, text_color=shade)
         rows[textwrap.fill(_label(answer), widest)] = [mark]
     return rows
 
