@@ -382,7 +382,7 @@ def figure(
     entries = list(_entries({mark.color for mark in marks}, {mark.text_color for mark in marks}))
     if not all(mark.filled for mark in marks):
         style = {"linestyle": "", "marker": "o", "markerfacecolor": "white", "color": "0.3"}
-        entries.append(Line2D([], [], label="open: interpolated, or an upper end alone", **style))
+        entries.append(Line2D([], [], label="open: interpolated, or no safe size known", **style))
     legend_outside(figure_of_lives, (entries, [entry.get_label() for entry in entries]), "upper", 2)
     return figure_of_lives
 
@@ -415,7 +415,7 @@ def _marks(answers, build, unasked, widest):
         colour, low, high = _COLOURS[answer.question], least / scale, answer.high / scale
         text, sought = " to ".join(end for end in dict.fromkeys(_ends(answer)) if end != MISSING), SOUGHT[answer.unit]
         if is_open := np.isnan(answer.low) and not sought.more_is_better:
-            text = f"at most {text}: none known safe"
+            text = f"at most {text}"
         if size := unasked.get(answer.name):
             text = f"{bounding(size / scale, 3, up=sought.more_is_better)} (inputs exact: {text})"
         is_red = answer.name in unasked or is_short(answer, build)
