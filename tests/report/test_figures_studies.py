@@ -188,7 +188,7 @@ def test_figure_17_shows_the_law_of_a_part_of_all_samples_and_the_tolerance():
 
 
 def test_figure_16_shows_the_onset_of_yield_and_the_share_beyond():
-    for found, label in ((plasticity(0.0), "none yields"), (plasticity(0.5), "yielding: 50.0 ± 5.0 % of contact")):
+    for found, label in ((plasticity(0.0), "none yields"), (plasticity(0.5), "yielding: 50.0 ± 5.0 %")):
         panel = figures_studies.summit_stresses({"c": found}).axes[0]
         assert label in [text.get_text() for text in panel.texts]
         assert_allclose(panel.get_lines()[0].get_ydata(), 0.6 * 12.8)

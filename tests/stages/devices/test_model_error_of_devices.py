@@ -93,11 +93,11 @@ def test_a_page_says_by_how_much_and_which_side_is_safe():
     assert "It is not known for what the tip holds." in page
     applied = {"C1": ERRORS["C1"].assign(applied=("humidity", [True, True]))}
     corrected = beam_page(given["C1"], {0.44: dry, 0.67: wet}, errors=applied).html
-    assert "Forces of tips are those of summits times the upper end" in corrected
+    assert "Sizes contain the upper end (95 % confidence)." in corrected
     assert "It is not known for what the tip holds." not in corrected
     assert "What is stated is on the safe side" in page
     stopper = stopper_page(STOPPER, STOPPERS["S1"], {(0.67,): BUDGETS["S1", 0.67]}, errors=ERRORS).html
-    assert "the pull-off force by -30.0 ± 1.0 % at a relative humidity of 0.44" in stopper
+    assert "the pull-off force by −30.0 ± 1.0 % at a relative humidity of 0.44" in stopper
     assert "model error: full elastic contact" in stopper
     assert "Full elastic contact" not in stopper_page(STOPPER, STOPPERS["S1"]).html
 

@@ -144,9 +144,7 @@ def summit_stresses(studies: Mapping[str, xr.Dataset]) -> Figure:
     for panel, dataset, onset in zip(axes, studies.values(), onsets, strict=True):
         panel.axhline(onset, color="C3", linestyle="--")
         transform, style = panel.get_yaxis_transform(), {"ha": "right", "va": "bottom", "path_effects": OUTLINED}
-        panel.annotate(
-            f"onset of yield, {ONSET:g} hardness", (0.95, onset), (0, 2), transform, "offset points", **style
-        )
+        panel.annotate(f"yield, {ONSET:g} hardness", (0.95, onset), (0, 2), transform, "offset points", **style)
         panel.text(0.95, 0.04, _share(dataset), transform=panel.transAxes, ha="right", path_effects=OUTLINED)
     names = [rf"pair {pair}, $\bar d$ = {TO_NM * float(dataset.separation):g} nm" for pair, dataset in studies.items()]
     letter(axes, names)
@@ -170,7 +168,7 @@ def _share(dataset):
     share, error = float(dataset.plastic_share), float(dataset.plastic_share_error)
     if np.isnan(share):
         return "hardly any contact"
-    return f"yielding: {with_error(100 * share, 100 * error)} % of contact" if share > 0 else "none yields"
+    return f"yielding: {with_error(100 * share, 100 * error)} %" if share > 0 else "none yields"
 
 
 # Figure 17
