@@ -115,7 +115,7 @@ def _likely(chi2, freedom):
 
 def _joint_floor(rings, nyquist, start):
     """Floor of rings up to the Nyquist wave number by a fit with Eq. (7). Zero if it is not needed or contradicted."""
-    waves = _Waves.of(rings.wavenumber, nyquist)
+    waves = _Waves.from_rings(rings.wavenumber, nyquist)
     without, *fits = (_noisy(rings, waves, np.inf, start, floor) for floor in (False, True))
     if without.likely and not _better(fits[0], without):
         return Floor()
@@ -150,7 +150,7 @@ class _Waves:
     share: np.ndarray  #: of the directions of the ring that each stands for [-]
 
     @classmethod
-    def of(cls, wavenumber, nyquist):
+    def from_rings(cls, wavenumber, nyquist):
         """Waves of rings (n,) themselves, and in some directions their aliases."""
         angle = np.pi / 4 * (np.arange(_DIRECTIONS) + 0.5) / _DIRECTIONS
         folded = np.array([shift for shift in product((0, -2, 2), repeat=2) if any(shift)]) * nyquist

@@ -60,7 +60,7 @@ def by_both_models(pair, humidity, number):
     streams = streams_of_sides(settings.seed, pair)
     space = HalfSpace(strips.beam.grid.shape, strips.beam.grid.spacing, solids.composite_modulus(*materials))
     attraction = solids.attraction_between(*materials, settings.van_der_waals)
-    adhesion = elements.Adhesion.of(settings.water.film(humidity), attraction, space)
+    adhesion = elements.Adhesion.from_film(settings.water.film(humidity), attraction, space)
     found = []
     for k in range(number):
         at = partial(_state, space, strips.draw(*streams(k)), adhesion)

@@ -183,9 +183,9 @@ def _is_stricter(answer, size):
 
 def _unless(one):
     """What a limit that nothing stated asks for is about, after its size."""
-    if one.name.startswith(Name.COLLAPSE):
-        return f"if {one.name.removeprefix(f'{Name.COLLAPSE}_')} dries on it"
-    return _UNLESS.get(one.name, f"by its {one.what.partition(':')[0]}")
+    if limit.name.startswith(Name.COLLAPSE):
+        return f"if {limit.name.removeprefix(f'{Name.COLLAPSE}_')} dries on it"
+    return _UNLESS.get(limit.name, f"by its {limit.what.partition(':')[0]}")
 
 
 def promise(answer: Answer) -> str:

@@ -152,11 +152,11 @@ def sure_in_short(curve: xr.Dataset, humidity: float, shape: str) -> str:
     """Where the simulated limit of a curve meets the requirement, in a few words for a picture."""
     axis, ranges = axes_of(curve)[0], ranges_of(curve, humidity, shape)
     computed = axis.values[curve.safe.sel(humidity=humidity, shape=shape).notnull().values]
-    parts = [_part(axis, ends, computed) for ends in ranges]
+    parts = [_range(axis, ends, computed) for ends in ranges]
     return f"sure {' or '.join(parts)}" if parts else "nowhere sure"
 
 
-def _part(axis: Axis, ends, computed):
+def _range(axis: Axis, ends, computed):
     """Range in words, without an end that is one of all known values."""
     (low, high), is_open = ends, np.isclose(ends, computed[[0, -1]], rtol=1e-9, atol=0)
     if is_open.all():

@@ -293,8 +293,8 @@ def gap_of(section: Mapping[str, Any]) -> float:
 def _chart(data, settings):
     """Figure of charts from their datasets, answers and limits."""
     answers = of_datasets(data["answers"], data["warnings"])
-    own = {name: (settings["gaps"][name], answer) for name, answer in answers.items()}
-    return chart(data["charts"], device_warnings.read(data["warnings"]).curves, own)
+    gaps_and_answers = {name: (settings["gaps"][name], answer) for name, answer in answers.items()}
+    return chart(data["charts"], device_warnings.read(data["warnings"]).curves, gaps_and_answers)
 
 
 STAGES = (

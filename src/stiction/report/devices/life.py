@@ -95,7 +95,7 @@ def table(life: Mapping[str, xr.Dataset]) -> Table:
         "form": (lambda form, needs: f"unknown: state {needs}" if needs else form, "form", "needs"),
         "source": (str, "source"),
     }
-    return Table.of(rows, CAPTION, columns)
+    return Table.from_rows(rows, CAPTION, columns)
 
 
 def significant(value: float, up: bool | None = None) -> str:

@@ -290,7 +290,7 @@ def _save(page, paths):
     record = Path(paths["html"]).parents[1] / "provenance.json"
     study = differing(provenance.recorded_runs(record)[-1]["config"], paper())
     explorer = page.explorer and page.explorer | {"study": {key: study[key] for key in study if key != "devices"}}
-    save_text(replace(page, made=provenance.last_run(record), explorer=explorer).html, paths["html"])
+    save_text(replace(page, run=provenance.last_run(record), explorer=explorer).html, paths["html"])
     save_text("".join(f"{html.with_minus(sentence)}\n" for sentence in page.lines), paths["answer"])
 
 

@@ -54,7 +54,7 @@ def _of_worst(limits, subjects):
 
 def as_markdown(limits: Limits, not_modelled: Mapping[str, Any]) -> str:
     """Page of limits, each sentence with all its subjects, and a sentence on effects not in the model."""
-    lines = [f"- {literal(one)}" for one in sentences(by_limit(limits))]
+    lines = [f"- {literal(text)}" for text in sentences(by_limit(limits))]
     none = ["No result is beyond the limits of the model that are checked."]
     ends = literal(words.not_modelled(**not_modelled))
     return "\n".join(["# Where results are beyond the model", "", *(lines or none), "", ends, ""])

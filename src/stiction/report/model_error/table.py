@@ -103,7 +103,7 @@ def _beam_change(case, variants):
 def table(*data) -> Table:
     """Error of the model for every case. Parameters as in ``_rows``."""
     rows = _rows(*data)
-    return Table.of(rows, [_CAPTION.format(strips=rows[0]["strips"]), _BEAMS], _COLUMNS)
+    return Table.from_rows(rows, [_CAPTION.format(strips=rows[0]["strips"]), _BEAMS], _COLUMNS)
 
 
 _COLUMNS = PAIR | {

@@ -204,7 +204,7 @@ def test_beams(datasets: Mapping[str, xr.Dataset]) -> Table:
     )
     missing = {"measured"} - {name for row in rows for name in row}
     columns = {name: column for name, column in _COLUMNS.items() if name not in missing}
-    return Table.of(rows, [caption, *map(Line, sentences)], columns)
+    return Table.from_rows(rows, [caption, *map(Line, sentences)], columns)
 
 
 def _data(device, update):

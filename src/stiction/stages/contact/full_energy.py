@@ -171,14 +171,14 @@ def strips_of(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, sett
     medium = full_contact.medium(settings, humidity)
     rough_pair, water = surface_pair(surfaces, "NG", settings), settings.water.at(humidity)
     adhesion = partial(
-        Adhesion.of, water.film(humidity), solids.attraction_between(*materials, medium), across=water.gaps
+        Adhesion.from_film, water.film(humidity), solids.attraction_between(*materials, medium), across=water.gaps
     )
     effort, grids = Effort(EFFORT), {}
-    fine = CountedHalfSpace.of(full_contact.elements_of(rough_pair, materials), effort)
-    grids[FINE] = Level.of(FINE, fine, adhesion)
+    fine = CountedHalfSpace.from_space(full_contact.elements_of(rough_pair, materials), effort)
+    grids[FINE] = Level.from_fine(FINE, fine, adhesion)
     for every in GRIDS:
         try:
-            grids[every] = Level.of(every, fine, adhesion)
+            grids[every] = Level.from_fine(every, fine, adhesion)
         except ValueError:  # no control
             continue
     return Strips(rough_pair, streams_of_sides(settings.seed, pair), grids, water, humidity, effort, settings.forces)

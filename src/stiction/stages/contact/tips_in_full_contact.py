@@ -96,7 +96,7 @@ def _at_slope(surfaces, settings, slope):
         pair = surface_pair(surfaces, "NG", at_slope)
         space = full_contact.elements_of(pair, materials)
         attraction = solids.attraction_between(*materials, medium)
-        adhesion = elements.Adhesion.of(water.film(humidity), attraction, space, water.gaps)
+        adhesion = elements.Adhesion.from_film(water.film(humidity), attraction, space, water.gaps)
         tips.append(TipsAtSlope(pair, space, adhesion, water, humidity))
     return tips
 
