@@ -77,8 +77,7 @@ def test_means_in_dry_air_are_those_beside_the_summits_of_more_strips(monkeypatc
     _, summits = full_contact.moved_models(beside)
     np.testing.assert_allclose(summits.mean(axis=0), beside.more.mean("more_samples"))
     assert_array_equal(full_contact.moved_models(alone)[1, ..., 0], alone.summit_energy)
-    air = pair_model_error.Settings((0.0,))
-    ratio, plain = (float(pair_model_error.compute(each, air).energy_ratio[0]) for each in (beside, alone))
+    ratio, plain = (float(pair_model_error.compute(each, [0.0]).energy_ratio[0]) for each in (beside, alone))
     full, summits = full_contact.moved_models(beside).mean(axis=1)[:, 0, 0]
     assert ratio == pytest.approx(full / summits)
     assert ratio != pytest.approx(plain, rel=1e-3)

@@ -103,7 +103,7 @@ def test_a_stiff_smooth_tip_on_a_peak_is_held_by_the_water_on_its_wedge_and_its_
 
 def test_the_change_of_tips_is_that_of_the_study_and_reaches_every_tip():
     of_strips = full_contact.layout(np.random.default_rng(1).gamma(9, size=(8, 1, 9)), (0.0,), 10 * NM)
-    error = pair_model_error.compute(of_strips, pair_model_error.Settings((0.0,), (0.0,)), few())
+    error = pair_model_error.compute(of_strips, [0.0], [0.0], tips=few())
     full, summits = tips_in_full_contact.models(few())
     assert_allclose(error.tip_ratio, full.mean(axis=0) / summits.mean(axis=0))
     scatters = [np.sqrt(np.mean(np.log(np.mean(each**2, axis=0) / each.mean(axis=0) ** 2))) for each in (full, summits)]

@@ -43,7 +43,7 @@ def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], settings: Setting
 def changes(study: xr.Dataset) -> xr.Dataset:
     """Changes of the forces of a probe by full contact, as a dataset of stage model_error_of_devices."""
     humidities = tuple(study.humidity.values.tolist())
-    errors = pair_model_error.compute(study, pair_model_error.Settings(humidities, humidities)).drop_vars("strips")
+    errors = pair_model_error.compute(study, humidities, humidities).drop_vars("strips")
     is_known = np.isfinite(errors.pull_off_ratio)
     flags = dict.fromkeys(("applied", "pull_off_applied"), is_known) | {"tip_applied": is_known & False}
     return errors.assign(flags | {"nearest": ((), True)} | _largest_residuals(study, errors))

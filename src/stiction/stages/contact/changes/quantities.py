@@ -43,7 +43,7 @@ def compute(
     """
     heights, spectrum = surfaces[settings.surfaces.index(surface)]
     if estimate is not None:
-        heights = measured_heights.compute(estimate, measured_heights.Settings(surface, "measured"))
+        heights = measured_heights.compute(estimate, surface, "measured")
     shifted, difference = bracketed(description(heights, spectrum), quantity, settings.deviation)
     changed = [drawn_as(surface, settings.sampling.spacing) for surface in shifted]
     alternatives = [

@@ -65,7 +65,7 @@ def _otherwise(name, estimate, choice, settings):
         source = replace(source, heights="measured")  # the only one that exists
     if not stage_estimate.is_resolved(estimate):
         source = replace(source, beyond="cut")  # as is no power law that could go on
-    heights = measured_heights.compute(estimate, measured_heights.Settings(name, source.heights))
+    heights = measured_heights.compute(estimate, name, source.heights)
     sampling = settings.sampling
     use = SpectrumUse(name, sampling.strip_length, sampling.margin)
     spectrum = measured_spectrum.Settings(source.psd, source.beyond, sampling.spacing, use)
