@@ -2,11 +2,13 @@
 
 import textwrap
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
 from stiction.answer.data import Answer, Between
 from stiction.answer.sought import FORCE, LENGTH, SOUGHT
@@ -66,8 +68,10 @@ _QUESTIONS = {
     HOLD: "hold: what holds it",
     FREE: "free: what frees it",
 }
-#: Colours of a limit below the size to build, and of one that leaves open what is safe.
+#: Colours of a limit that does not allow the size to build, and of one that leaves open what is safe.
 _SHORT, _UNKNOWN = "#B00020", "0.4"
+#: Marker of a limit with the errors of the inputs, and ground of the side on which limits forbid the size to build.
+_DECIDES, _FORBIDDEN = "D", {"color": BUILD, "alpha": 0.12, "linewidth": 0, "zorder": -1}
 #: Height of the legend, and largest height of the figure [in]. Share of its width for labels, and mean width of their
 #: characters [in].
 _LEGEND, _TALLEST, _LABELS, _CHARACTER = 0.3, 100.0, 0.4, 0.045
@@ -359,7 +363,8 @@ def figure(
     """Limits of the lives of devices as dot plots: lengths of beams, or forces of stoppers, a panel for each device.
 
     Sizes to build are by device [m or N], as are stricter ones between stated airs, and those by the names of rows that
-    nothing stated asks for, with the errors of the inputs. Red numbers: stricter.
+    nothing stated asks for, with the errors of the inputs. Red numbers, on the shaded side of a size to build, do not
+    allow it.
     """
     answers = {name: _rows(dataset) for name, dataset in life.items()}
     widest = int(_LABELS * page_width(DOUBLE) / _CHARACTER)
@@ -376,26 +381,35 @@ def figure(
         if np.isfinite(builds[name]):
             panel.axvline(factor * builds[name], color=BUILD, linewidth=1.2, zorder=0)
         dots.draw(panel, marks)
+        _shade(panel, factor * builds[name], _sought(life[name]))
         panel.set(xlabel=f"{'length' if unit == 'µm' else 'force'} [{unit}]")
     letter(axes[:, 0], list(rows))
-    marks = [mark for rows_of_device in rows.values() for row in rows_of_device.values() for mark in row]
-    entries = list(_entries({mark.color for mark in marks}, {mark.text_color for mark in marks}))
-    if not all(mark.filled for mark in marks):
-        style = {"linestyle": "", "marker": "o", "markerfacecolor": "white", "color": "0.3"}
-        entries.append(Line2D([], [], label="open: interpolated, or no safe size known", **style))
+    entries = list(_entries([mark for of_device in rows.values() for row in of_device.values() for mark in row]))
     legend_outside(figure_of_lives, (entries, [entry.get_label() for entry in entries]), "upper", 2)
     return figure_of_lives
 
 
-def _entries(colours, of_numbers):
-    """Yield entries of the legend: the questions whose colours are drawn, the size to build, and what is too short."""
+def _shade(panel, build, sought):
+    """Shade the side of a size to build on which a limit does not allow it."""
+    low, high = panel.get_xlim()
+    if np.isfinite(build):
+        panel.axvspan(*((build, high) if sought.more_is_better else (low, build)), **_FORBIDDEN)
+        panel.set_xlim(low, high)
+
+
+def _entries(marks):
+    """Yield entries of the legend: the questions whose colours are drawn, the size to build, and what forbids it."""
     for question, colour in _COLOURS.items():
-        if colour in colours:
+        if colour in {mark.color for mark in marks}:
             yield Line2D([], [], color=colour, linewidth=4, label=_QUESTIONS[question])
     yield Line2D([], [], color=BUILD, label="size to build, all stated inside")
-    if _SHORT in of_numbers:
-        style = {"linestyle": "", "marker": "$12$", "markersize": 9, "color": _SHORT}
-        yield Line2D([], [], label="red: does not allow it, with errors of inputs", **style)
+    yield Patch(**_FORBIDDEN, label="limits on this side do not allow it")
+    single = {"linestyle": "", "markersize": 4}
+    if _DECIDES in {mark.marker for mark in marks}:
+        yield Line2D([], [], marker=_DECIDES, color=_SHORT, label="the same limit with errors of inputs", **single)
+    if not all(mark.filled for mark in marks):
+        style = {"marker": "o", "markerfacecolor": "white", "color": "0.3", **single}
+        yield Line2D([], [], label="interpolated, or no safe size known", **style)
 
 
 def _rows(dataset):
@@ -407,7 +421,8 @@ def _rows(dataset):
 def _marks(answers, build, unasked, widest):
     """One row for each answer from its lower to its upper bound, with both numbers, by its label.
 
-    Stricter sizes with the errors of the inputs, by the names of their rows, stand before bounds with exact inputs.
+    Stricter sizes with the errors of the inputs, by the names of their rows, have a mark of their own and stand before
+    bounds with exact inputs.
     """
     rows = {}
     for answer in answers:
@@ -416,13 +431,21 @@ def _marks(answers, build, unasked, widest):
         text, sought = " to ".join(end for end in dict.fromkeys(_ends(answer)) if end != MISSING), SOUGHT[answer.unit]
         if is_open := np.isnan(answer.low) and not sought.more_is_better:
             text = f"at most {text}"
-        if size := unasked.get(answer.name):
-            text = f"{bounding(size / scale, 3, up=sought.more_is_better)} (inputs exact: {text})"
-        is_red = answer.name in unasked or is_short(answer, build)
-        shade = _SHORT if is_red else _UNKNOWN if is_open else "black"
-        mark = dots.Mark(low, high, colour, text, filled=not is_open, text_color=shade)
-        rows[textwrap.fill(_label(answer), widest)] = [mark]
+        shade = _SHORT if is_short(answer, build) else _UNKNOWN if is_open else "black"
+        marks = [dots.Mark(low, high, colour, text, filled=not is_open, text_color=shade)]
+        if answer.name in unasked:
+            size = unasked[answer.name] / scale
+            marks = _with_errors(marks[0], size, bounding(size, 3, up=sought.more_is_better))
+        rows[textwrap.fill(_label(answer), widest)] = marks
     return rows
+
+
+def _with_errors(mark, size, number):
+    """Marks of a row with exact inputs and of its stricter size with their errors, with both numbers on the right."""
+    text = f"{number} (inputs exact: {mark.text})"
+    marks = [mark, dots.Mark(size, size, _SHORT, marker=_DECIDES)]
+    last = int(size > mark.high)
+    return [replace(each, text=text * (k == last), text_color=_SHORT) for k, each in enumerate(marks)]
 
 
 def _mark_between(between, build, sought, widest):
