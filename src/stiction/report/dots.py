@@ -46,6 +46,8 @@ def draw(panel: Axes, rows: Mapping[str, Sequence[Mark]], *, column: str | None 
         panel.axhline(row, color="0.9", linewidth=0.6, zorder=0)
         for mark in marks:
             _draw(panel, row, mark)
+            if not mark.text:
+                continue
             if column is not None:
                 panel.annotate(mark.text, (1, row), **in_column, color=mark.text_color)
             else:

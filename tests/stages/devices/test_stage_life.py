@@ -22,6 +22,7 @@ from stiction.life import drying, freeing, holding, touch
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
 from stiction.report import html
+from stiction.report.answer import words
 from stiction.report.devices import life as report
 from stiction.report.devices.pages import Page, Section, with_life
 from stiction.report.format import safe_size
@@ -502,8 +503,12 @@ def test_limits_that_do_not_allow_the_size_to_build_are_red(found, factor):
         assert {shown[k].name for k in short} <= names.keys(), "errors of the inputs make limits stricter"
         if factor > 1:
             assert short
-        said = " ".join(report.judged_without(replace(built, unasked=stricter)))
+        beside = replace(built, unasked=stricter)
+        said = " ".join(report.judged_without(beside))
         assert all(safe_size(limit.size, built.sought) in said for limit in stricter), "said as it is drawn"
+        assert ("Several at once can be stricter" in said) == (
+            len(words.stricter(replace(built, unasked=stricter))) > 1
+        )
 
 
 def test_a_page_says_the_life_and_shows_all_answers(found):

@@ -176,7 +176,10 @@ def judged_without(answer: Answer) -> list[str]:
     sizes = words.unasked(answer)
     if not sizes or answer.forbidden:
         return []
-    return [f"Not inside, as nothing that you stated asks for it: {listed(sizes)}, with the errors of the inputs."]
+    together = " Several at once can be stricter: state them." if len(words.stricter(answer)) > 1 else ""
+    return [
+        f"Not inside, as nothing that you stated asks for it: {listed(sizes)}, with the errors of the inputs.{together}"
+    ]
 
 
 def _limit(answers, length):
