@@ -30,7 +30,7 @@ from stiction.report.page import Summary
 from stiction.report.style import save
 from stiction.run import storage
 from stiction.stages.answer.beside import unasked
-from stiction.stages.life.answers import QUESTIONS, answers_of, layout
+from stiction.stages.life.answers import QUESTIONS, Name, answers_of, layout
 from stiction.stages.life.beams import beam_answers, length_of
 from stiction.stages.life.inputs import BeamErrors, BeamKeys, Electrode, Liquid, StopperKeys
 from stiction.stages.life.stoppers import stopper_answers
@@ -509,6 +509,15 @@ def test_limits_that_do_not_allow_the_size_to_build_are_red(found, factor):
         assert ("Several at once can be stricter" in said) == (
             len(words.stricter(replace(built, unasked=stricter))) > 1
         )
+
+
+def test_beams_of_which_no_length_is_known_to_come_free_may_stay_down_below_its_upper_bound(found):
+    dataset = found["C1"]
+    is_release = dataset.answer.str.startswith(Name.RELEASED)
+    assert is_release.any()
+    for lows, may in ((dataset.low, False), (dataset.low.where(~is_release), True)):
+        said = " ".join(report.sentences(dataset.assign(low=lows)))
+        assert ("; shorter ones may, too" in said) == may
 
 
 def test_a_page_says_the_life_and_shows_all_answers(found):

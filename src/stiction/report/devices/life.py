@@ -301,11 +301,13 @@ def _drying(answers, at, length):
         fates.setdefault((length > limit.low) + (length > limit.high), []).append(liquid)
     now = [f"{_FATES[fate]} when it is dried from {listed(names)}" for fate, names in fates.items()]
     limits = ", ".join(f"{_low(limit)} and {_high(limit)} µm ({liquid})" for liquid, limit in standing.items())
-    free = ", ".join(f"{_high(limit)} µm ({liquid})" for liquid, limit in _liquids(answers, Name.RELEASED).items())
+    released = _liquids(answers, Name.RELEASED)
+    free = ", ".join(f"{_high(limit)} µm ({liquid})" for liquid, limit in released.items())
+    shorter = "; shorter ones may, too" if any(np.isnan(limit.low) for limit in released.values()) else ""
     return [
         *([f"{at} {', and '.join(now)}."] if np.isfinite(length) else []),
         f"Beams that dry stand up to the first of these lengths and collapse beyond the second: {limits}. After a "
-        f"collapse they stay down if they are longer than {free}.",
+        f"collapse they stay down if they are longer than {free}{shorter}.",
     ]
 
 
