@@ -354,8 +354,8 @@ def _points(beam, laws):
         If a coefficient other than d_max is negative, one is not finite, or the number of laws is no multiple of that
         of elements.
     """
-    points, rest = divmod(len(laws), beam.elements)
-    if rest:
+    points, remainder = divmod(len(laws), beam.elements)
+    if remainder:
         raise ValueError(f"{len(laws)} laws do not spread evenly over {beam.elements} elements")
     # Summits of soft or skewed surfaces can attract most where the mean planes are below each other, d_max < 0.
     broken = ~(np.isfinite(laws).all(axis=1) & (laws[:, [0, 2, 3]] >= 0).all(axis=1))

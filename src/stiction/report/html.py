@@ -30,8 +30,8 @@ class _Loader(FileSystemLoader):
 
     def get_source(self, environment, template):
         """Source of a template (of scripts without comments and indentation), its file and whether it is new."""
-        source, *rest = super().get_source(environment, template)
-        return (_FOR_READERS.sub("", source) if template.endswith(".js") else source), *rest
+        source, *file_and_age = super().get_source(environment, template)
+        return (_FOR_READERS.sub("", source) if template.endswith(".js") else source), *file_and_age
 
 
 _ENVIRONMENT = Environment(

@@ -181,12 +181,12 @@ class _Noisy:
 
 def _noisy(rings, waves, end, start, floor=True):
     """Fit plateau, corner, slope and floor of a spectrum with this end."""
-    seen = waves.up_to(end)
+    up_to_end = waves.up_to(end)
 
     def total(parameters):
         """Spectrum in the rings relative to its plateau, with the floor [-]."""
-        form = seen.share * shape(seen.wavenumber, *parameters[:2])
-        return np.bincount(seen.ring, form, len(rings.density)) + (np.exp(parameters[2]) if floor else 0.0)
+        form = up_to_end.share * shape(up_to_end.wavenumber, *parameters[:2])
+        return np.bincount(up_to_end.ring, form, len(rings.density)) + (np.exp(parameters[2]) if floor else 0.0)
 
     def objective(parameters):
         """Half of the deviance per weight of the rings, at the best plateau."""

@@ -20,7 +20,7 @@ from stiction.plan.plan import Plan
 from stiction.stages.contact import curves, full_contact, pair_model_error
 from stiction.stages.contact.pairs import bodies
 from stiction.stages.laws import forces
-from stiction.stages.surfaces.rough_surfaces import both
+from stiction.stages.surfaces.rough_surfaces import sides_of
 
 #: Configuration with fewer strips than a study must have.
 FEW = merged(small.PLAN.config, {"studies": {"full_contact": {"samples": 2}}})
@@ -240,7 +240,7 @@ def test_between_humidities_the_true_ratios_are_within_two_stated_errors(pair, s
     job = results.graph.job(f"studies/full_contact/{pair}")
     at = tuple(sorted((*job.settings["humidities"], *between)))
     settings = replace(small.settings_of(full_contact, job.settings), humidities=at, strips=strips)
-    found = full_contact.compute(both(results.inputs(job)), pair, settings)
+    found = full_contact.compute(sides_of(results.inputs(job)), pair, settings)
     of_interpolation = []
     for quantity in (full_contact.energies, full_contact.pull_offs):
         humidities, *models = quantity(found)

@@ -91,10 +91,10 @@ def _enough(curve, humidity, shape):
     sought = sought_of(curve)
     required = f"{float(curve.required) / UM:g} {sought.shown}"
     by_beam = f"a {sought.name} of {required} ({END_STATES[shape].by})"
-    wanted = f"a {sought.required} of {required}" if sought.more_is_better else by_beam
+    requirement = f"a {sought.required} of {required}" if sought.more_is_better else by_beam
     ranges = axes_of(curve)[0].ranges(ranges_of(curve, humidity, shape))
     where = _where(curve.sel(humidity=humidity, shape=shape), axes_of(curve)[0], ranges)
-    return f"For {wanted}, {airs([humidity])}, {where}"
+    return f"For {requirement}, {airs([humidity])}, {where}"
 
 
 def _where(curve, axis: Axis, ranges):

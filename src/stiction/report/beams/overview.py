@@ -136,7 +136,7 @@ def _lengths(panel, released, published):
         style = {"color": PUBLISHED, "markerfacecolor": "white", "fmt": "^:", "zorder": 3, "label": "published"}
         panel.errorbar(published.relative_humidity + _APART, published.geo, published.geo_std, **style)
     # Model GEO, scattered dimensions, where it was computed.
-    model = "GEO" if any(which == "GEO" for _, which in released) else "NG"
+    model = "GEO" if any(beam_model == "GEO" for _, beam_model in released) else "NG"
     points = sorted(key for key in released if key[1] == model)
     stuck = [TO_UM * stuck_lengths(released[key]) for key in points]
     placed = places([*(humidity for humidity, _ in points), *published.relative_humidity])

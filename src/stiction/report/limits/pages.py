@@ -69,7 +69,7 @@ def as_json(limits: Limits) -> str:
 def of_json(text: str) -> list[tuple[Limit, list[Subject]]]:
     """Different limits with their subjects, the inverse of `as_json`; none of an empty text."""
     return [
-        (restored(fields), [Subject(name, tuple(which)) for name, which in subjects])
+        (restored(fields), [Subject(name, tuple(words_of_subject)) for name, words_of_subject in subjects])
         for stored in json.loads(text or "[]")
         for subjects, fields in [(stored.pop("subjects"), stored)]
     ]

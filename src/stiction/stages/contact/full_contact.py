@@ -29,7 +29,7 @@ from stiction.progress import progress
 from stiction.stages.contact import contact, pairs
 from stiction.stages.contact.curves import force_curves
 from stiction.stages.contact.pairs import bodies, streams_of_sides, surface_pair
-from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
+from stiction.stages.surfaces.rough_surfaces import sides_of, surface_inputs
 
 #: Relative standard errors, by the strips, of the ratios of the means, and of the values that one in 1000 exceeds, at
 #: which no more strips are drawn.
@@ -298,7 +298,7 @@ def _stage(name, folder, settings, forces):
         inputs=lambda plan, at: surface_inputs(plan, at.pair),
         settings=settings,
         kind=Settings,
-        compute=lambda data, at, settings: compute(both(data), at.pair, settings),
+        compute=lambda data, at, settings: compute(sides_of(data), at.pair, settings),
         message=f"Full elastic contact of pair {{pair}}{forces}, beside the sum over summits.",
         running=Running(minutes=120, priority=1),
     )

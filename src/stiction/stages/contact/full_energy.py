@@ -30,7 +30,7 @@ from stiction.plan.stage import At, Running, Stage, select
 from stiction.stages.contact import contact, full_contact
 from stiction.stages.contact.curves import force_curves
 from stiction.stages.contact.pairs import bodies, streams_of_sides, surface_pair
-from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
+from stiction.stages.surfaces.rough_surfaces import sides_of, surface_inputs
 from stiction.streams import stream
 
 #: Largest relative error of the ratio of energies with which predictions are corrected: 1 % of a length.
@@ -256,7 +256,7 @@ STAGES = (
         inputs=lambda plan, at: surface_inputs(plan, at.case.pair),
         settings=settings_of,
         kind=Settings,
-        compute=lambda data, at, settings: compute(both(data), at.case, settings),
+        compute=lambda data, at, settings: compute(sides_of(data), at.case, settings),
         message="Energies of {case} in full elastic contact.",
         running=Running(minutes=120, priority=1),
     ),

@@ -17,7 +17,7 @@ from stiction.stages.contact import pairs
 from stiction.stages.contact.changes.patches import PatchChange
 from stiction.stages.surfaces import measured_heights
 from stiction.stages.surfaces.descriptions import description, drawn_as
-from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
+from stiction.stages.surfaces.rough_surfaces import sides_of, surface_inputs
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ def from_surfaces(
     data: Mapping[str, Any], pair: str, surface: str, quantity: str, settings: Settings
 ) -> list[xr.Dataset]:
     """Compute from the datasets of both surfaces by stage, and from the estimate if there is one."""
-    return compute(both(data), pair, surface, quantity, settings, data.get("estimate"))
+    return compute(sides_of(data), pair, surface, quantity, settings, data.get("estimate"))
 
 
 def difference(contact: xr.Dataset) -> float:
