@@ -136,7 +136,7 @@ def test_the_end_state_that_decides_is_first_and_nothing_is_sure_where_it_does_n
     assert alone.get_title(loc="left") == "(b) beam, only if its tip cannot touch"
     said = [[text.get_text().replace("\n", " ") for text in panel.texts] for panel in (decides, alone)]
     assert [sum("sure from" in text for text in one) for one in said] == [2, 0]
-    assert "RH 0.6, RH 0.8: everywhere, only if its tip cannot touch" in said[1]
+    assert "RH 0.6, RH 0.8: enough everywhere, only if its tip cannot touch" in said[1]
     thick = [
         [line for line in panel.collections if isinstance(line, LineCollection) and line.get_linewidth()[0] > 3]
         for panel in (decides, alone)
@@ -206,3 +206,27 @@ def test_text_of_curves_can_be_read_on_a_phone(draw):
     figure = draw()
     shown = [text for text in figure.findobj(Text) if text.get_visible() and text.get_text()]
     assert min(text.get_fontsize() for text in shown) / 72 * 390 / figure.get_figwidth() >= 11  # pixels
+
+
+def hatched(safe_by):
+    """Panel at RH 0.6 of a map over rms and skewness, and its hatching, with limits this factor above the estimate."""
+    found = rough(others=(0.0, -0.5, 0.5))
+    panel = figures.roughness_map(found.assign(safe=found.estimate * safe_by)).axes[1]
+    return panel, [one for one in panel.collections if getattr(one, "hatches", None) and any(one.hatches)]
+
+
+def test_what_a_map_meets_without_confidence_is_hatched():
+    panel, (hatching,) = hatched(1.3)
+    clip = hatching.get_clip_path().get_fully_transformed_path()
+    for rms, expected in ((3.0, (True, False)), (4.5, (True, True)), (7.5, (False, True))):  # estimate: 4, limit: 6.2
+        place = (rms, 0.0)
+        unsure = hatching.get_paths()[0].contains_point(place)
+        assert (unsure, clip.contains_point(panel.transData.transform(place))) == expected, rms
+    assert "met without 95 % confidence" in panel.get_legend_handles_labels()[1]
+    panel, none = hatched(0.1)
+    assert (none, "met without 95 % confidence" in panel.get_legend_handles_labels()[1]) == ([], False)
+
+
+def test_an_unknown_bound_of_a_map_is_no_confidence():
+    _, (hatching,) = hatched(np.nan)
+    assert hatching.get_paths()[0].contains_point((6.0, 0.0))

@@ -7,6 +7,7 @@ import xarray as xr
 from matplotlib.collections import Collection
 from matplotlib.colors import CenteredNorm
 from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
 
 from stiction.config.surfaces import process
 from stiction.contact.air import Air
@@ -294,6 +295,7 @@ def _filled(panel, computed, margins, label, shown=None):
     if levels.count():
         colours = panel.contourf(x, y, levels, 12, cmap="RdBu", norm=CenteredNorm())
         panel.figure.colorbar(colours, ax=panel, label=label)
+    _hatch(panel, x, y, *margins)
     lines = (("-", "estimate meets the requirement"), ("--", "with 95 % confidence too"))
     for values, (line, words) in zip(margins, lines, strict=True):
         if np.nanmin(values, initial=np.inf) < 0 < np.nanmax(values, initial=-np.inf):
@@ -304,6 +306,18 @@ def _filled(panel, computed, margins, label, shown=None):
     panel.plot(*map(np.ravel, points), ".", color="0.3", markersize=2, label="computed")
     for side, scale, axis in zip((panel.xaxis, panel.yaxis), (panel.set_xscale, panel.set_yscale), axes, strict=True):
         _show(side, scale, computed, axis)
+
+
+def _hatch(panel, x, y, margin, safe):
+    """Hatch where the estimate meets the requirement and its 95 % bound does not, or is unknown."""
+    safe = np.where(np.isnan(safe), -np.abs(margin), safe)
+    if np.nanmax(margin, initial=-np.inf) <= 0 or np.nanmin(safe, initial=np.inf) >= 0:
+        return
+    met = panel.contourf(x, y, np.ma.masked_invalid(margin), [0, np.inf], colors="none")
+    unsure = panel.contourf(x, y, np.ma.masked_invalid(safe), [-np.inf, 0], colors="none", hatches=["////"])
+    unsure.set_clip_path(met.get_paths()[0], panel.transData)
+    entry = {"facecolor": "none", "edgecolor": "black", "linewidth": 0, "label": "met without 95 % confidence"}
+    panel.add_patch(Rectangle((x[0], y[0]), 0, 0, hatch="////", **entry))
 
 
 # Laws

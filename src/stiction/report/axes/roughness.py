@@ -159,7 +159,7 @@ def sure_in_short(curve: xr.Dataset, humidity: float, shape: str) -> str:
     if not parts:
         return "nowhere sure"
     where, only_if = " or ".join(parts), END_STATES[shape].only_if
-    return f"{where}, {only_if}" if only_if else f"sure {where}"
+    return f"enough {where}, {only_if}" if only_if else f"sure {where}"
 
 
 def _part(axis: Axis, ends, computed):
