@@ -143,14 +143,14 @@ def _of_options(arguments, library):
     if arguments.hurst is not None and arguments.hurst > 1:
         raise Impossible(f"--hurst must be at most 1, got {arguments.hurst}")
     sides = [surface({"like": LIKE} | entry, library), surface(library[OPPOSITE], library)]
-    return kind.of(_NAME, device, sides, averaged=arguments.like is None)
+    return kind.question(_NAME, device, sides, averaged=arguments.like is None)
 
 
 class _Kind(NamedTuple):
     """Kind of a device that options state."""
 
     name: str  #: in a file
-    of: Callable[..., Any]  #: question, as `stiction.estimate.question.of_numbers`
+    question: Callable[..., Any]  #: as `stiction.estimate.question.of_numbers`
     needed: tuple[str, ...]  #: options that it needs
     strange: dict[str, str]  #: options of other kinds, and these in words
 

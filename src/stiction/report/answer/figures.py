@@ -175,9 +175,8 @@ def _stuck(panel: Axes, answer, stricter=_IN_TITLES):
 
 def _stricter(panel, answer, scale, label):
     """Marks of the sizes that are stricter than the size to build, at the allowed fraction; these sizes."""
-    beside = [one.size for one in (answer.between, *answer.unasked) if one]
-    build = safe_size(answer.build, answer.sought)
-    sizes = [size / scale for size in beside if safe_size(size, answer.sought) != build]  # as they are stated
+    beside = [limit.size for limit in (answer.between, *answer.unasked) if limit]
+    sizes = [size / scale for size in beside if answer.sought.is_stricter(size, answer.build)]
     if sizes:
         panel.plot(sizes, [answer.share] * len(sizes), **_STRICTER, label=label)
     return sizes

@@ -71,13 +71,14 @@ def roughness(dataset: xr.Dataset) -> Figure:
 
     Of a map, the curve with the second quantity as given is drawn.
     """
-    as_given = (one for one in curves_of(dataset) if "other" not in one.coords or one.other == one.other_given)
+    curves = curves_of(dataset)
+    as_given = (curve for curve in curves if "other" not in curve.coords or curve.other == curve.other_given)
     curve = next(as_given)
-    given = axes_of(curve)[0].in_unit(float(curve.given))
+    roughness_as_given = axes_of(curve)[0].in_unit(float(curve.given))
 
     def marks(panel, shape):
         """The given roughness, what a dash means at any humidity, and the crossings in words."""
-        panel.axvline(given, color="0.6", linestyle=":", label="as given")
+        panel.axvline(roughness_as_given, color="0.6", linestyle=":", label="as given")
         panel.plot([], [], "_", color="0.3", markersize=8, label="simulated limit")
         panel.plot(
             [], [], color="0.3", **_SURE, solid_capstyle="butt", label="sure: simulated limit meets it, one-sided 95 %"
@@ -94,15 +95,15 @@ def devices(curve: xr.Dataset, recommended: xr.Dataset, device: str) -> Figure:
 
     A panel for each end state. Grey: the settings that suffice at all humidities and against all end states.
     """
-    one = recommended.sel(who=device)
-    ranges = one.sufficient.values[np.isfinite(one.sufficient.values[:, 0])]
+    settings = recommended.sel(who=device)
+    ranges = settings.sufficient.values[np.isfinite(settings.sufficient.values[:, 0])]
 
     def marks(panel, _shape):
         """Settings that suffice, and the best one."""
         for ends in ranges:
             panel.axvspan(*ends, color="0.9", zorder=0, label="next run suffices, 95 %")
-        if np.isfinite(float(one.best)):
-            _best(panel, one)
+        if np.isfinite(float(settings.best)):
+            _best(panel, settings)
         return []
 
     return _curves(curve, _band, marks)
@@ -126,7 +127,7 @@ def _curves(curve, draw, mark):
         panel.set_ylabel(f"{sought.label} at which\n{one_in(float(curve.share))} sticks [{sought.shown}]")
         put(panel, level, [*labels, Label(words, "black")])
     letter(axes, _held_by(shapes))
-    lines_first = sorted(zip(*handles(*axes[:, 0]), strict=True), key=lambda one: isinstance(one[0], Collection))
+    lines_first = sorted(zip(*handles(*axes[:, 0]), strict=True), key=lambda line: isinstance(line[0], Collection))
     legend_outside(figure, tuple(zip(*lines_first, strict=True)), "lower", 2)
     return figure
 
@@ -171,10 +172,11 @@ def _crossings(curve, shape):
     for humidity, colour in humidity_colours(curve.humidity.values.tolist()).items():
         air, crossed = Air(humidity).words, crossings_of(curve, humidity, shape)
         places, sure = crossed.crossing_place.values, sure_in_short(curve, humidity, shape)
-        for k, (place, reach) in enumerate(zip(places, INTERVAL * crossed.crossing_error.values, strict=True)):
-            said = f"estimate {axis.text(place)}, 95 %: {axis.text(place - reach)} to {axis.at(place + reach)}"
-            text = f"{air}: {said}" if k else textwrap.fill(f"{air}: {sure}", _LONGEST) + f"\n{said}"
-            labels.append(Label(text, colour, axis.in_unit(place)))
+        for k, (crossing, reach) in enumerate(zip(places, INTERVAL * crossed.crossing_error.values, strict=True)):
+            interval = f"{axis.text(crossing - reach)} to {axis.at(crossing + reach)}"
+            estimate = f"estimate {axis.text(crossing)}, 95 %: {interval}"
+            text = f"{air}: {estimate}" if k else textwrap.fill(f"{air}: {sure}", _LONGEST) + f"\n{estimate}"
+            labels.append(Label(text, colour, axis.in_unit(crossing)))
         margin = margins_of(curve.sel(humidity=humidity, shape=shape))
         if not len(places) and np.isfinite(margin).any():
             nearest = int(np.nanargmin(np.abs(margin)))
@@ -202,22 +204,22 @@ def _band(panel, line, colour):
         panel.fill_between(x, estimate * near, estimate * far, alpha=0.15, label="outer band: next run, 95 %", **style)
 
 
-def _best(panel, one):
+def _best(panel, settings):
     """The best setting with its 95 % interval at the bottom of a panel, grey and open where no setting suffices."""
-    along, best, (low, high) = axes_of(one)[0], float(one.best), map(float, one.best_interval)
-    suffices = bool(along.ranges(one.sufficient.values))
+    along, best, (low, high) = axes_of(settings)[0], float(settings.best), map(float, settings.best_interval)
+    suffices = bool(along.ranges(settings.sufficient.values))
     style = {"color": BUILD} if suffices else {"color": _NOT_ENOUGH, "markerfacecolor": "white"}
     bottom, top = panel.get_ylim()
     free = (top / bottom) ** _FREE
     panel.set_ylim(bottom / free, top * free)
     reach, across = np.maximum([[best - low], [high - best]], 0), panel.get_xaxis_transform()
     panel.errorbar(best, _FREE / 4, xerr=reach, fmt="D", markersize=4, transform=across, **style)
-    said = ("best " if suffices else "best, but not sufficient: ") + along.at(best)
-    said += f", 95 %: {along.text(low)} to {along.at(high)}" if low < high else ""
-    part = (best - along.values[0]) / np.ptp(along.values)
-    place = {"ha": ("left", "center", "right")[int(np.clip(3 * part, 0, 2))], "va": "bottom", "fontsize": 7}
-    place |= {"color": style["color"], "path_effects": OUTLINED}
-    panel.annotate(said, (best, _FREE / 4), (0, 4), xycoords=across, textcoords="offset points", **place)
+    label = ("best " if suffices else "best, but not sufficient: ") + along.at(best)
+    label += f", 95 %: {along.text(low)} to {along.at(high)}" if low < high else ""
+    fraction = (best - along.values[0]) / np.ptp(along.values)  # of the way across the panel
+    alignment = {"ha": ("left", "center", "right")[int(np.clip(3 * fraction, 0, 2))], "va": "bottom", "fontsize": 7}
+    alignment |= {"color": style["color"], "path_effects": OUTLINED}
+    panel.annotate(label, (best, _FREE / 4), (0, 4), xycoords=across, textcoords="offset points", **alignment)
     if not suffices:
         panel.text(
             0.5,
@@ -268,18 +270,18 @@ def roughness_map(data: xr.Dataset) -> Figure:
             curve = data.sel(humidity=humidity, shape=shape).transpose("other", "roughness", ...)
             label = f"log$_{{10}}$ ({sought_of(data).ratio})"
             _filled(panel, data, (margins_of(curve), margins_of(curve, "safe")), label)
-            place = along.in_unit(float(data.given)), across.in_unit(float(data.other_given))
-            panel.plot(*place, "k+", markersize=8, linestyle="none", label="surface as given")
+            as_given = along.in_unit(float(data.given)), across.in_unit(float(data.other_given))
+            panel.plot(*as_given, "k+", markersize=8, linestyle="none", label="surface as given")
     letter(axes, [f"{by}{Air(humidity).words}" for humidity in humidities for by in _held_by(shapes, ", ")])
     legend_outside(figure, handles(*axes.flat), "lower", 2)
     return figure
 
 
 @styled
-def process_map(found: xr.Dataset, pairs: xr.Dataset) -> Figure:
+def process_map(margins: xr.Dataset, pairs: xr.Dataset) -> Figure:
     """Smallest margin of a device over two processes, with its lines of zero margin and the best pair."""
     figure, ((panel,),) = panels(1, 1, (1.5 * SINGLE, 3.4))
-    _filled(panel, found, (pairs.margin.values, pairs.safe.values), "log$_{10}$ (smallest margin)", pairs)
+    _filled(panel, margins, (pairs.margin.values, pairs.safe.values), "log$_{10}$ (smallest margin)", pairs)
     best, interval = pairs.best.values, pairs.best_interval.values
     across, up = np.abs(interval - best[:, None])[..., None]
     marks = {"fmt": "D", "color": "black", "markersize": 4, "label": "best, 95 % intervals", "clip_on": False}
@@ -313,9 +315,9 @@ def _hatch(panel, x, y, margin, safe):
     safe = np.where(np.isnan(safe), -np.abs(margin), safe)
     if np.nanmax(margin, initial=-np.inf) <= 0 or np.nanmin(safe, initial=np.inf) >= 0:
         return
-    met = panel.contourf(x, y, np.ma.masked_invalid(margin), [0, np.inf], colors="none")
+    sufficient = panel.contourf(x, y, np.ma.masked_invalid(margin), [0, np.inf], colors="none")
     unsure = panel.contourf(x, y, np.ma.masked_invalid(safe), [-np.inf, 0], colors="none", hatches=["////"])
-    unsure.set_clip_path(met.get_paths()[0], panel.transData)
+    unsure.set_clip_path(sufficient.get_paths()[0], panel.transData)
     entry = {"facecolor": "none", "edgecolor": "black", "linewidth": 0, "label": "met without 95 % confidence"}
     panel.add_patch(Rectangle((x[0], y[0]), 0, 0, hatch="////", **entry))
 
@@ -356,7 +358,7 @@ def _stage(file, shows, inputs, draw, names):
         "Devices",
         inputs=inputs,
         compute=draw,
-        jobs=lambda plan: [{wildcard: one} for one in names(plan)],
+        jobs=lambda plan: [{wildcard: name} for name in names(plan)],
         targets=("devices",),
     )
 

@@ -222,10 +222,10 @@ def _mark_sizes_to_build(panel, limits, answer, placed):
     if is_forbidden(answer) or not np.isfinite(answer.build):
         return
     decides, sought = answer.together.humidity, answer.sought
-    whole = f"to build {answer.device}: {to_build(answer)}"
+    label = f"to build {answer.device}: {to_build(answer)}"
     alone = {air.humidity: air.build for air in answer.airs if air.humidity != decides and np.isfinite(air.build)}
     only = f"to build {answer.device} in this air alone"
-    styles = {"markerfacecolor": "white", "label": only}, {"label": whole}
+    styles = {"markerfacecolor": "white", "label": only}, {"label": label}
     for sizes, style in zip((alone, {decides: answer.build}), styles, strict=True):
         for humidity, size in sizes.items():
             at, height = placed.get(humidity, humidity), TO_UM * size
@@ -333,8 +333,8 @@ def own_sizes(section: Mapping[str, Any]) -> tuple[float, float]:
 def _chart(data, settings):
     """Figure of charts from their datasets, answers and limits."""
     answers = of_datasets(data["answers"], data["warnings"])
-    own = {name: (*settings["sizes"][name], answer) for name, answer in answers.items()}
-    return chart(data["charts"], device_warnings.read(data["warnings"]).curves, own)
+    sizes_and_answers = {name: (*settings["sizes"][name], answer) for name, answer in answers.items()}
+    return chart(data["charts"], device_warnings.read(data["warnings"]).curves, sizes_and_answers)
 
 
 STAGES = (

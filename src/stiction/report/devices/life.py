@@ -102,7 +102,7 @@ def table(life: Mapping[str, xr.Dataset]) -> Table:
         "form": (lambda form, needs: f"unknown: state {needs}" if needs else form, "form", "needs"),
         "source": (str, "source"),
     }
-    return Table.of(rows, CAPTION, columns)
+    return Table.from_rows(rows, CAPTION, columns)
 
 
 def significant(value: float, up: bool | None = None) -> str:
@@ -484,7 +484,7 @@ def _with_errors(mark, size, number):
 
 def _mark_between(between, build, sought, widest):
     """Row of the size to build between the stated airs by its label, none if it reads as the size to build."""
-    if between is None or safe_size(between.size, sought) == safe_size(build, sought):
+    if between is None or not sought.is_stricter(between.size, build):
         return {}
     size, text = between.size / sought.scale, bounding(between.size / sought.scale, 3, up=sought.more_is_better)
     label = f"{sought.label} to build at RH {between.humidity:.2g}, between stated airs, interpolated"

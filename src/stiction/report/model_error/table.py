@@ -107,7 +107,7 @@ _SHOWN = "model error of $l_s$ [%]\n+: longer (safe side)", "deviation from publ
 def table(*data) -> Table:
     """Error of the model for every case. Parameters as in ``_rows``."""
     rows = _rows(*data)
-    return Table.of(rows, [_CAPTION.format(strips=rows[0]["strips"]), _BEAMS], _COLUMNS)
+    return Table.from_rows(rows, [_CAPTION.format(strips=rows[0]["strips"]), _BEAMS], _COLUMNS)
 
 
 _COLUMNS = PAIR | {

@@ -73,14 +73,15 @@ class AskedBeam:
     def sizes(self) -> dict[str, Any]:
         """Variables of its own numbers."""
         stated = {name: getattr(self, name) for name in ("thickness", "gap", "width", "residual_stress")}
-        return {name: ((), value) for name, value in stated.items() if value is not None} | _own(self)
+        return {name: ((), value) for name, value in stated.items() if value is not None} | _constant(self)
 
     def question(self, air: float) -> Question | Bridge:
         """Question about one air [-]."""
-        of = "", tuple(side.heights for side in self.sides), ({}, {}), (air,), self.thickness, self.gap, self.width
+        surfaces = tuple(side.heights for side in self.sides)
+        stated = "", surfaces, ({}, {}), (air,), self.thickness, self.gap, self.width
         if self.residual_stress is None:
-            return Question(*of, constant=self.hamaker_constant)
-        return Bridge(*of, self.residual_stress)
+            return Question(*stated, constant=self.hamaker_constant)
+        return Bridge(*stated, self.residual_stress)
 
 
 @dataclass(frozen=True)
@@ -108,7 +109,7 @@ class AskedStopper:
     @property
     def sizes(self) -> dict[str, Any]:
         """Variables of its own numbers."""
-        return {"contact": ("direction", list(self.contact)), "direction": ["x", "y"]} | _own(self)
+        return {"contact": ("direction", list(self.contact)), "direction": ["x", "y"]} | _constant(self)
 
     def question(self, air: float) -> Stopper:
         """Question about one air [-]."""
@@ -116,10 +117,10 @@ class AskedStopper:
         return Stopper("", surfaces, ({}, {}), (air,), self.contact, constant=self.hamaker_constant)
 
 
-def _own(asked):
+def _constant(asked):
     """Variable of a Hamaker constant that differs from that of polysilicon."""
-    own = asked.hamaker_constant
-    return {} if own == POLYSILICON else {"hamaker_constant": ((), own)}
+    constant = asked.hamaker_constant
+    return {} if constant == POLYSILICON else {"hamaker_constant": ((), constant)}
 
 
 @dataclass(frozen=True)
@@ -221,8 +222,8 @@ def _settings(kind_of_numbers):
         pair, surfaces = plan.config["pairs"][section["pair"]], plan.config["surfaces"]
         sides = {side: surfaces[pair[side]] for side in SIDES}
         has_material = any("material" in side for side in sides.values())
-        own = {"hamaker_constant_zJ": round(from_si(question.constant, "zJ"), 9)} if has_material else {}
-        return {"asked": select(kind_of_numbers, section | sides | own)}
+        constant = {"hamaker_constant_zJ": round(from_si(question.constant, "zJ"), 9)} if has_material else {}
+        return {"asked": select(kind_of_numbers, section | sides | constant)}
 
     return settings
 
