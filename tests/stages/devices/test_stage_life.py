@@ -9,6 +9,7 @@ import xarray as xr
 from answers import stopper_dataset
 from ground import C1, R1, safe_with_tips, safe_without_tips
 from legends import covering
+from lives import LIQUIDS, OF, STOPPER, UNSTATED
 from numpy.testing import assert_allclose
 from plans import job_settings
 
@@ -32,22 +33,9 @@ from stiction.run import storage
 from stiction.stages.answer.beside import unasked
 from stiction.stages.life.answers import QUESTIONS, Name, answers_of, layout
 from stiction.stages.life.beams import beam_answers, length_of
-from stiction.stages.life.inputs import BeamErrors, BeamKeys, Electrode, Liquid, StopperKeys
+from stiction.stages.life.inputs import BeamErrors, BeamKeys, Liquid, StopperKeys
 from stiction.stages.life.stoppers import stopper_answers
 
-LIQUIDS = {"water": Liquid(0.072), "mine": Liquid(0.03, np.pi / 3)}
-OF = BeamKeys(device=C1, density=2330.0, liquids=LIQUIDS, uncertainty=BeamErrors())
-AREA = (3e-6, 3e-6)
-UNSTATED = {"restoring_force": 18.99e-6, "contact": AREA}
-STOPPER = StopperKeys(
-    restoring_force=18.99e-6,
-    contact=AREA,
-    stiffness=10.0,
-    gap=1.899e-6,
-    mass=50e-12,
-    electrode=Electrode(1e-8, 3e-6),
-    touchdowns=4,
-)
 SECTION = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30, "humidities": [0.67]}
 MINE = {"mine": {"surface_tension_mN_per_m": 30, "contact_angle_deg": 60}}
 SPRING = {"kind": "stopper", "pair": "b", "contact_um": [3, 3], "stiffness_N_per_m": 10, "gap_um": 1.899}

@@ -7,10 +7,10 @@ import pytest
 from answers import BEAMS, BUDGETS, STOPPERS, safe
 from charted import charted
 from drawn_curves import etched, law_of, mapped, rough
+from lives import OF
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 from PIL import Image
-from test_stage_life import OF
 
 from stiction.answer.data import Between
 from stiction.answer.sought import FORCE, LENGTH
