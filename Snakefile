@@ -148,7 +148,7 @@ onsuccess:
 rule all:
     default_target: True
     input:
-        map(planner.files_of, WHOLE),
+        map(planner.files_of, ALL_TARGETS),
     localrule: True
     message:
         "Tables, figures, checks and pages of devices."

@@ -162,9 +162,9 @@ def test_there_are_at_least_as_many_samples_as_changed_ones(with_error):
 
 @pytest.mark.slow
 def test_the_error_of_the_mean_length_is_a_quarter_of_the_scatter_of_energies():
-    pilot = accuracy._Pilot.of(Plan(configured(PLAIN)))
+    pilot = accuracy._Pilot.from_plan(Plan(configured(PLAIN)))
     (case,) = pilot.plan.devices.cases
-    ((error,), again) = pilot.mean_error(case), accuracy._Pilot.of(Plan(configured(PLAIN))).mean_error(case)
+    ((error,), again) = pilot.mean_error(case), accuracy._Pilot.from_plan(Plan(configured(PLAIN))).mean_error(case)
     contact = pilot._contact(*pilot._patches(case)[0])
     energies = curves.energies(contact, case.humidity, in_si(accuracy._Settings, pilot._beam_settings(case)).water)
     assert np.isclose(error, 0.25 * energies.std(ddof=1) / energies.mean(), rtol=0.02)
@@ -218,8 +218,11 @@ def test_what_a_pilot_showed_is_remembered_until_something_changes_on_which_it_d
 
 
 def test_the_random_numbers_of_the_pilot_are_none_of_the_run(small):
-    assert accuracy._Pilot.of(Plan(small)).plan.config["seed"] != small["seed"]
-    assert accuracy._Pilot.of(Plan(small)).plan.config["seed"] == accuracy._Pilot.of(Plan(small)).plan.config["seed"]
+    assert accuracy._Pilot.from_plan(Plan(small)).plan.config["seed"] != small["seed"]
+    assert (
+        accuracy._Pilot.from_plan(Plan(small)).plan.config["seed"]
+        == accuracy._Pilot.from_plan(Plan(small)).plan.config["seed"]
+    )
 
 
 @pytest.mark.slow

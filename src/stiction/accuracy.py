@@ -46,9 +46,9 @@ from stiction.streams import stream
 
 #: Samples of a ground, and beams with tips, of the pilot; order of its chaos model, which so many samples carry.
 PILOT, _ORDER = 200, 5
-#: Part of the lengths that is fitted. ASSUME: the lowest quarter has the slope of the lowest 5 %, with half the error.
-#: Those of 1400 beams and tips of pair b differ by 5 to 20 %.
-_PART = 0.25
+#: Fraction of the lengths that is fitted. ASSUME: the lowest quarter has the slope of the lowest 5 %, with half the
+#: error. Slopes of 1400 beams and tips of pair b differ by 5 to 20 %.
+_FITTED = 0.25
 
 
 def decided(config: dict) -> dict:
@@ -148,7 +148,7 @@ def _by_ground(plan, cases):
 
 def _spreads(plan, code, remember):
     """Spread of the lengths of each shape, by case, of all with an error."""
-    pilot = _Pilot.of(plan)
+    pilot = _Pilot.from_plan(plan)
     spreads = {
         case: remember([code, *pilot.determined_by(case)], lambda case=case: pilot.spreads(case))
         for case in plan.devices.cases
@@ -161,7 +161,7 @@ def _mean_errors(plan, code, remember):
 
     It is computed once for all cantilevers on a ground, whose lengths are one power of the energies.
     """
-    pilot, errors = _Pilot.of(plan), {}
+    pilot, errors = _Pilot.from_plan(plan), {}
 
     def error(case):
         """Error of a case, remembered."""
@@ -195,7 +195,7 @@ class _Pilot:
     contacts: dict[tuple, Any] = field(default_factory=dict)  #: those drawn, by kind and patch
 
     @classmethod
-    def of(cls, plan: Plan) -> "_Pilot":
+    def from_plan(cls, plan: Plan) -> "_Pilot":
         """Pilot of a plan, with its own seed and numbers."""
         config = with_preliminary_estimates(plan.config, plan.preliminary)
         seed = int(stream(config["seed"], "accuracy").integers(2**53))
@@ -275,9 +275,12 @@ def spreads_of(beams: Released, share: float, strips: int) -> list[tuple[float, 
     def quantiles(move):
         """Lengths of the share by shape (shapes,) [m]."""
         return np.array(
-            [fit_tail(lengths_of_shape, _PART).length(share) for lengths_of_shape in beams.moved(move).lengths.values()]
+            [
+                fit_tail(lengths_of_shape, _FITTED).length(share)
+                for lengths_of_shape in beams.moved(move).lengths.values()
+            ]
         )
 
     errors = beams.surfaces.error(quantiles) / quantiles(lambda lengths: lengths) * strips**0.5
-    slopes = [fit_tail(lengths_of_shape, _PART).slope for lengths_of_shape in beams.lengths.values()]
+    slopes = [fit_tail(lengths_of_shape, _FITTED).slope for lengths_of_shape in beams.lengths.values()]
     return [(float(slope), float(error)) for slope, error in zip(slopes, errors, strict=True)]

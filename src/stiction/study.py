@@ -20,7 +20,7 @@ from stiction.stages.beams import beams
 from stiction.stages.beams.cantilevers import Cantilevers, cantilever, sections
 from stiction.stages.contact import corrections, curves, pairs
 from stiction.stages.laws import samples
-from stiction.stages.surfaces.rough_surfaces import both
+from stiction.stages.surfaces.rough_surfaces import sides_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -84,7 +84,7 @@ class PairStudy:
         """Both surfaces, for drawing samples."""
         job = self.results.graph.job(f"contact/{self.name}_{self.model}/0-of-1")
         settings = in_si(pairs.Settings, job.settings)
-        return pairs.surface_pair(both(self.results.inputs(job)), self.model, settings)
+        return pairs.surface_pair(sides_of(self.results.inputs(job)), self.model, settings)
 
     def energies(self, humidity: float | str) -> np.ndarray:
         """Adhesion energies e of all samples at a relative humidity (m,) [J m⁻²]."""

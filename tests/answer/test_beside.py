@@ -8,7 +8,8 @@ import xarray as xr
 from answers import BRIDGE, BUDGETS, CANTILEVER, STOPPER, STOPPERS, beam_answer, safe, stopper_answer
 from numpy.testing import assert_equal
 
-from stiction.answer.data import Answer, Between, Cause, Stay, Step, Unasked, Verdict
+from stiction.answer.data import Answer, AnswerInAir, Between, Cause, Stay, Step, Unasked, Verdict
+from stiction.answer.sought import FORCE, LENGTH
 from stiction.report.answer import screen, tables, words
 from stiction.report.devices import explorer
 from stiction.report.format import safe_size
@@ -50,6 +51,32 @@ def test_the_headline_of_a_stopper_names_a_larger_force_between_its_airs_as_its_
     row = tables.devices({"S1": answer}).frame.iloc[0]
     assert row["stricter"] == beside_it
     assert row["between"] == pytest.approx(1e6 * answer.between.size)
+
+
+@pytest.mark.parametrize(
+    ("longest", "is_named"), [(200.49e-6, False), (200.2e-6, True), (199.99e-6, True), (200.51e-6, False)]
+)
+def test_a_length_between_the_airs_is_compared_as_a_number_and_not_as_it_reads(longest, is_named):
+    """Of 200.51 µm, 200.49 µm differs by rounding and reads as 200 µm, not 201. 200.2 µm differs by more."""
+    steps = (Step(Cause.ESTIMATE, 200.51e-6, 1.0, 0.6, "tip", "", True),)
+    airs = tuple(AnswerInAir(humidity, 200.51e-6, np.nan, None) for humidity in (0.4, 0.6))
+    answer = Answer("C1", "cantilever", 1e-3, "m", 200.51e-6, 200.51e-6, steps, airs)
+    limits = {0.4: 200.51e-6, 0.5: longest, 0.6: 200.51e-6}
+    assert bool(beside.between(answer, limits)) == is_named
+    # Control: as they read, the first two are as different from the size to build.
+    reads = answer.in_words(longest) != answer.in_words(answer.build)
+    assert reads == (longest < 200.5e-6)
+
+
+@pytest.mark.parametrize("sought", [LENGTH, FORCE], ids=lambda sought: sought.name)
+def test_a_size_is_stricter_if_the_size_to_build_reads_otherwise(sought):
+    rng = np.random.default_rng(3)
+    sizes = sought.scale * 10 ** rng.uniform(-1, 4, (400, 1)) * (1 + rng.uniform(-3e-3, 3e-3, (1, 2)))
+    stricter = [sought.is_stricter(size, build) for size, build in sizes]
+    differ = [safe_size(size, sought) != safe_size(build, sought) for size, build in sizes]
+    assert_equal(stricter, np.array(differ) & (sought.sign * (sizes[:, 0] - sizes[:, 1]) < 0))
+    assert 20 < sum(differ) < 380, "both kinds are drawn"
+    assert not any(sought.is_stricter(*pair) for pair in ((1e-4, 1e-4), (np.nan, 1e-4), (1e-4, np.nan)))
 
 
 @pytest.mark.parametrize("at", [0.44, 0.85])

@@ -23,7 +23,7 @@ from stiction.plan.plan import Plan
 from stiction.plan.stage import select
 from stiction.report.format import TO_MJ, signed, with_error
 from stiction.stages.contact import full_contact
-from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
+from stiction.stages.surfaces.rough_surfaces import sides_of, surface_inputs
 
 #: Width of the strips [µm], a third of that of the beam.
 WIDTH = 10.0
@@ -47,7 +47,7 @@ def row(pair, humidity, strips):
     seen = plan.seen_by(pair, (*ELASTIC, "hardness_GPa"), samples=None) | {"humidities": [humidity], "strips": strips}
     across = in_si(full_contact.Settings, select(full_contact.Settings, seen))
     touching = replace(across, water=replace(across.water, gaps=None))
-    drawn = [full_contact.strips(both(data), pair, settings) for settings in (touching, across)]
+    drawn = [full_contact.strips(sides_of(data), pair, settings) for settings in (touching, across)]
     found = np.array([energies(strip, *one, *other) for (*strip, one), (*_, other) in zip(*drawn, strict=True)])
     summits, all_summits, full, all_full = found.T
     parts, whole = ratio(all_full - full, all_summits - summits), ratio(all_full, all_summits)

@@ -18,7 +18,7 @@ from stiction.contact.full.halfspace import HalfSpace  # noqa: E402
 from stiction.plan.graph import Results  # noqa: E402
 from stiction.run.provenance import cpu_name  # noqa: E402
 from stiction.stages.contact import full_contact  # noqa: E402
-from stiction.stages.surfaces.rough_surfaces import both  # noqa: E402
+from stiction.stages.surfaces.rough_surfaces import sides_of  # noqa: E402
 
 CONFIG = files.load()
 #: Strips that are timed, and those that give crack lengths to 2 %.
@@ -40,7 +40,7 @@ def row(results, pair):
     job = results.graph.job(f"studies/full_contact/{pair}")
     settings = replace(job.stage.converted(job.settings), strips=STRIPS + 1)
     taken, floors, numbers = [], [], []
-    for space, heights, cases in full_contact.strips(both(results.inputs(job)), pair, settings):
+    for space, heights, cases in full_contact.strips(sides_of(results.inputs(job)), pair, settings):
         counted = Counted(space.shape, space.spacing, space.modulus)
         start = time.process_time()
         for adhesion, curve, _ in cases:

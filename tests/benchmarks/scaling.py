@@ -45,11 +45,11 @@ from stiction.config import files
 from stiction.plan.graph import Results
 from stiction.run.logs import peak_memory
 from stiction.stages.contact import contact
-from stiction.stages.surfaces.rough_surfaces import both
+from stiction.stages.surfaces.rough_surfaces import sides_of
 
 results = Results.of(files.load(json.loads(sys.argv[1])))
 job = results.graph.job("contact/b_NG/0-of-1")
-surfaces, settings = both(results.inputs(job)), job.stage.converted(job.settings)
+surfaces, settings = sides_of(results.inputs(job)), job.stage.converted(job.settings)
 contact.compute(surfaces, "b", "NG", settings, range(1))
 start = time.perf_counter()
 contact.compute(surfaces, "b", "NG", settings)

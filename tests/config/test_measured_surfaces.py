@@ -244,7 +244,7 @@ def test_no_gaussian_scan_is_refused_before_a_run_or_in_it(tmp_path, number):
         assert found["feasible"] is not None
         read = scan.layout(ScanFile(drawn, "Height", "nm", ()))
         estimated = stage_estimate.compute([read], "Etched", stage_estimate.Settings(1, estimate.Settings(), 8))
-        used = heights.compute(estimated, heights.Settings("Etched", "moments"))
+        used = heights.compute(estimated, "Etched", "moments")
         distances.append(measured_moments(used).distance)
     # Every other one is beyond the border.
     assert abs(np.count_nonzero(distances) - number / 2) < 2.6 * np.sqrt(number / 4)
@@ -289,7 +289,7 @@ def test_scans_of_two_heights_have_their_measured_density_or_are_refused_before_
         entry = validation.checked(config).config["surfaces"]["Etched"]
         read = scan.layout(ScanFile(replace(drawn, heights=z), "Height", "nm", ()))
         estimated = stage_estimate.compute([read], "Etched", stage_estimate.Settings(1, estimate.Settings(), 8))
-        heights.compute(estimated, heights.Settings("Etched", entry["heights"]))
+        heights.compute(estimated, "Etched", entry["heights"])
         ends.append(entry["heights"])
     assert ends[1:] == ["measured", "moments"]
 
@@ -464,7 +464,7 @@ def test_a_real_file_gives_heights_and_a_spectrum_or_is_refused_in_sentences_tha
         found = stage_estimate.compute(
             [read], "Etched", in_si(stage_estimate.Settings, job_settings(plan, "estimate/Etched"))
         )
-        used = heights.compute(found, in_si(heights.Settings, job_settings(plan, "heights/Etched")))
+        used = heights.compute(found, **job_settings(plan, "heights/Etched"))
         drawn = spectrum.compute(found, used, in_si(spectrum.Settings, job_settings(plan, "spectrum/Etched")))
         assert np.isfinite(stage_estimate.rms(found))
         assert np.all(np.isfinite(found.covariance))

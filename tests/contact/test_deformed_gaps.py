@@ -39,7 +39,7 @@ def solids_of(water):
 def adhesion(name, modulus=E, reaches=True):
     water, humidity = ALL[name]
     space = HalfSpace((8, 8), 10 * NM, modulus)
-    return Adhesion.of(water.film(humidity), solids_of(water), space, water.gaps if reaches else None)
+    return Adhesion.from_film(water.film(humidity), solids_of(water), space, water.gaps if reaches else None)
 
 
 # Tables
@@ -117,7 +117,7 @@ def test_a_rigid_sphere_attracts_with_two_pi_its_radius_times_the_work_of_flats(
 def rough_adhesion(name, reaches=True, modulus=E):
     water, humidity = ALL[name]
     space = space_of(modulus=modulus)
-    return space, Adhesion.of(water.film(humidity), solids_of(water), space, water.gaps if reaches else None)
+    return space, Adhesion.from_film(water.film(humidity), solids_of(water), space, water.gaps if reaches else None)
 
 
 def test_rigid_surfaces_apart_attract_each_other_as_undeformed_ones():

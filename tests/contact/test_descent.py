@@ -25,7 +25,7 @@ def dry(space, hamaker=1.0):
     """Attraction in dry air, touching and across gaps, with a multiple of the Hamaker constant."""
     constants = {medium: hamaker * each for medium, each in DRY.gaps.hamaker_constant.items()}
     solids = replace(SOLIDS, hamaker_constant=hamaker * SOLIDS.hamaker_constant)
-    return Adhesion.of((0.0, 0.0), solids, space, replace(DRY.gaps, hamaker_constant=constants))
+    return Adhesion.from_film((0.0, 0.0), solids, space, replace(DRY.gaps, hamaker_constant=constants))
 
 
 def smooth(rms):
@@ -215,7 +215,7 @@ def test_the_study_descends_where_turns_do_not_settle():
 
 def wet(space):
     """Film of water of 1.5 nm, and solids that touch in it."""
-    return Adhesion.of((1.5 * NM, 6e7), attraction("water"), space)
+    return Adhesion.from_film((1.5 * NM, 6e7), attraction("water"), space)
 
 
 @pytest.mark.parametrize("rms", [1.0, 2.0])

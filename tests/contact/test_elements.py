@@ -46,7 +46,7 @@ def forces_of_spheres(radius, overlap, spacing, adhesion=None, positions=12):
     found = []
     for _ in range(positions):
         z = sphere(points, spacing, radius, rng.uniform(-0.5, 0.5, 2))
-        state = equilibrium(space, z, -overlap, adhesion and Adhesion.of((0.0, 0.0), WATER, space))
+        state = equilibrium(space, z, -overlap, adhesion and Adhesion.from_film((0.0, 0.0), WATER, space))
         found.append(state.force * points**2 * spacing**2)
     return np.array(found)
 
@@ -78,7 +78,7 @@ def test_attraction_that_displaces_nothing_is_not_maugis():
     points = points_around(radius, 1.5 * NM, spacing)
     space = HalfSpace((points, points), spacing, E, periodic=False)
     state = equilibrium(space, sphere(points, spacing, radius), -overlap)
-    adhesion = Adhesion.of((0.0, 0.0), WATER, space)
+    adhesion = Adhesion.from_film((0.0, 0.0), WATER, space)
     force = (state.pressure.mean(dtype=float) - adhesion.traction(state.gap).mean(dtype=float)) * (
         points * spacing
     ) ** 2
@@ -165,7 +165,7 @@ def space_of(periodic=True, modulus=E):
 
 
 def adhesion_at(humidity, space=None):
-    return Adhesion.of(film(humidity, 300.0), WATER, space or space_of())
+    return Adhesion.from_film(film(humidity, 300.0), WATER, space or space_of())
 
 
 def by_summits(number, humidity):
@@ -264,7 +264,7 @@ def test_flooded_flats_have_the_tension_times_the_height_of_the_film():
 
 
 def test_the_ramp_of_van_der_waals_forces_keeps_their_work():
-    adhesion = Adhesion.of((0.0, 0.0), WATER, space_of())
+    adhesion = Adhesion.from_film((0.0, 0.0), WATER, space_of())
     gaps = np.linspace(0, 0.4 * NM, 4001)
     assert adhesion.energy(0.0) == pytest.approx(-WATER.work_of_adhesion, rel=1e-12)
     np.testing.assert_allclose(
@@ -338,12 +338,12 @@ def test_a_force_that_jumps_past_zero_is_found_at_its_jump(below):
 
 def test_elements_too_large_for_van_der_waals_forces_are_refused():
     with pytest.raises(ValueError, match="needs a finer grid") as caught:
-        Adhesion.of((1 * NM, 1e7), WATER, HalfSpace((8, 8), 60 * NM, E))
+        Adhesion.from_film((1 * NM, 1e7), WATER, HalfSpace((8, 8), 60 * NM, E))
     enough = float(str(caught.value).rpartition("decrease sampling.spacing_nm to ")[2])
-    assert Adhesion.of((1 * NM, 1e7), WATER, HalfSpace((8, 8), enough * NM, E)).stress > 0
+    assert Adhesion.from_film((1 * NM, 1e7), WATER, HalfSpace((8, 8), enough * NM, E)).stress > 0
     with pytest.raises(ValueError, match="needs a finer grid"):
-        Adhesion.of((1 * NM, 1e7), WATER, HalfSpace((8, 8), 1.03 * enough * NM, E))
-    assert Adhesion.of((1 * NM, 1e7), None, HalfSpace((8, 8), 60 * NM, E)) == Adhesion(1 * NM, 1e7)
+        Adhesion.from_film((1 * NM, 1e7), WATER, HalfSpace((8, 8), 1.03 * enough * NM, E))
+    assert Adhesion.from_film((1 * NM, 1e7), None, HalfSpace((8, 8), 60 * NM, E)) == Adhesion(1 * NM, 1e7)
 
 
 def test_surfaces_too_smooth_to_resist_the_adhesion_are_refused():

@@ -19,7 +19,7 @@ SPACE = space_of()
 
 def counted(most=np.inf):
     """Elements of strips with a limit."""
-    return CountedHalfSpace.of(SPACE, Effort(most))
+    return CountedHalfSpace.from_space(SPACE, Effort(most))
 
 
 def calls(level):
@@ -39,7 +39,7 @@ def calls(level):
 
 @pytest.mark.parametrize(("rms", "first"), [(1.0, "turns"), (0.3, "descent")])
 def test_the_solver_that_settled_last_comes_first_on_other_strips(rms, first):
-    level = Level.of(1, counted(), dry)
+    level = Level.from_fine(1, counted(), dry)
     names = calls(level)
     level.at_rest(smooth(rms), led(rms))
     before = list(names)
@@ -51,7 +51,7 @@ def test_the_solver_that_settled_last_comes_first_on_other_strips(rms, first):
 
 def test_the_state_of_a_coarse_grid_leads_both_solvers_to_the_rest_that_they_find_without_it():
     for rms, solvers in ((1.0, (TURNS,)), (0.3, (DESCENT,))):
-        fine, coarse = (Level.of(every, SPACE, dry) for every in (1, 2))
+        fine, coarse = (Level.from_fine(every, SPACE, dry) for every in (1, 2))
         fine.solvers = coarse.solvers = solvers
         heights, curve = smooth(rms), led(rms)
         without = fine.energy(fine.at_rest(heights, curve), heights)
@@ -69,7 +69,7 @@ def test_counted_elements_have_the_states_of_others_and_count_every_displacement
 
 def test_coarse_grids_spend_from_the_same_effort():
     space = counted()
-    coarse = Level.of(2, space, dry).space
+    coarse = Level.from_fine(2, space, dry).space
     coarse.displacement(np.zeros(coarse.shape, np.float32))
     assert space.effort.spent == np.prod(coarse.shape)
     assert coarse.spacing == 2 * space.spacing
@@ -77,7 +77,7 @@ def test_coarse_grids_spend_from_the_same_effort():
 
 @pytest.mark.parametrize("solvers", [(TURNS, DESCENT), (DESCENT, TURNS)])
 def test_no_solver_goes_on_beyond_the_effort(solvers):
-    level = replace(Level.of(1, counted(20 * smooth(1.0).size), dry), solvers=solvers)
+    level = replace(Level.from_fine(1, counted(20 * smooth(1.0).size), dry), solvers=solvers)
     with pytest.raises(TooLong, match="takes too long"):
         level.at_rest(smooth(1.0), led(1.0))
     assert level.space.effort.spent == 21 * smooth(1.0).size

@@ -57,7 +57,7 @@ def at_all(heights, within, attraction=NONE):
 def test_one_sphere_alone_is_in_full_elastic_contact(solids):
     z = caps((120 * NM, 300 * NM))
     space = space_of(z)
-    adhesion = Adhesion.of((0.0, 0.0), solids, space)
+    adhesion = Adhesion.from_film((0.0, 0.0), solids, space)
     (distance, one), (_, other) = (at_all(z, within, adhesion) for within in (alone(z, space), together(space)))
     assert_allclose(one, other, atol=3e-3 * np.abs(one).max())
     deep, area = distance < TOP - 0.5 * NM, z.size * (5 * NM) ** 2

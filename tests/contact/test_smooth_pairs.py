@@ -23,7 +23,7 @@ from stiction.plan.graph import Graph, Results
 from stiction.plan.plan import Plan
 from stiction.report.limits.words import not_modelled, text
 from stiction.stages.contact import full_contact
-from stiction.stages.surfaces.rough_surfaces import both
+from stiction.stages.surfaces.rough_surfaces import sides_of
 
 NM = 1e-9
 
@@ -73,7 +73,7 @@ def of_strips(rms_nm, humidity, strips):
     results = Results.of(load(config))
     job = results.graph.job("studies/full_contact/across/p")
     settings = replace(in_si(full_contact.Settings, job.settings), strips=strips)
-    study = full_contact.compute(both(results.inputs(job)), "p", settings)
+    study = full_contact.compute(sides_of(results.inputs(job)), "p", settings)
     at, *models = full_contact.pull_offs(study)
     (ratio,), (error,) = mean_ratios(*models, at, at)
     return ratio, error

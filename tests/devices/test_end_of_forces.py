@@ -11,7 +11,7 @@ from stiction.devices.stoppers import safe_forces
 from stiction.plan.graph import Results
 from stiction.stages.contact import contact, pairs
 from stiction.stages.devices import stoppers
-from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
+from stiction.stages.surfaces.rough_surfaces import sides_of, surface_inputs
 
 FEW = 1000
 BUMP = {"kind": "stopper", "pair": "b", "contact_um": [1.5, 1.5], "restoring_force_uN": 5, "humidities": [0.67]}
@@ -22,7 +22,7 @@ def drawn_forces(patches):
     """Pull-off forces of patches of pair b [N]."""
     results = Results.of(stiction.load({"devices": {"S1": BUMP}}))
     graph, names = results.graph, surface_inputs(results.graph.plan, "b")
-    surfaces = both({stage: [results[name] for name in files] for stage, files in names.items()})
+    surfaces = sides_of({stage: [results[name] for name in files] for stage, files in names.items()})
     own = in_si(pairs.Settings, graph.job("devices/contact/b_1500x1500").settings)
     settings = in_si(stoppers.Settings, graph.job("devices/stoppers/S1").settings)
     chunks = (range(start, start + 2000) for start in range(0, patches, 2000))

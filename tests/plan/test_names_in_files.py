@@ -12,7 +12,7 @@ from stiction.config.merging import merged
 from stiction.config.messages import dotted
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
-from stiction.plan.planner import WHOLE
+from stiction.plan.planner import ALL_TARGETS
 from stiction.plan.stage import WILDCARDS
 
 #: Parts of names of files, of which names are drawn.
@@ -96,7 +96,7 @@ def graph(request):
 
 
 def test_every_file_has_one_job_whose_wildcards_are_names_of_the_configuration(graph):
-    jobs, config = graph.needed(*WHOLE, "model_error", "asperities", "pressing"), graph.plan.config
+    jobs, config = graph.needed(*ALL_TARGETS, "model_error", "asperities", "pressing"), graph.plan.config
     made = {name: job for job in jobs for name in job.names}
     assert len(made) == sum(len(job.names) for job in jobs), "two jobs write one file"
     stages = {job.stage.name for job in jobs}

@@ -316,8 +316,8 @@ def test_errors_by_scans_are_columns_of_their_own_and_only_of_measured_pairs():
 def test_text_of_users_in_a_table_is_shown_as_it_is():
     columns = {"file": (str, "file"), "channel": (str, "channel")}
     row = {"file": HOSTILE_FILE, "channel": HOSTILE}
-    table = tables.Table.of([row, row], [f"Scans {HOSTILE}.", tables.Line(HOSTILE)], columns)
-    own = Reading(tables.Table.of([{"file": "a", "channel": "b"}], "", columns).page("T"))
+    table = tables.Table.from_rows([row, row], [f"Scans {HOSTILE}.", tables.Line(HOSTILE)], columns)
+    own = Reading(tables.Table.from_rows([{"file": "a", "channel": "b"}], "", columns).page("T"))
     for html, code in ((table.page(HOSTILE), own.code), (rendered(table.markdown), [])):
         shown = Reading(html)
         assert [name for name in shown.code if name != "meta"] == [name for name in code if name != "meta"]
@@ -326,7 +326,7 @@ def test_text_of_users_in_a_table_is_shown_as_it_is():
         assert f"Scans {HOSTILE}." in "".join(shown.text["p"] + shown.text.get("dd", []))
     assert shown.text["li"] == [HOSTILE]
     assert "eq" not in shown.text, "a formula"
-    two_lines = tables.Table.of([row | {"channel": "x\ny"}], "", columns)
+    two_lines = tables.Table.from_rows([row | {"channel": "x\ny"}], "", columns)
     assert two_lines.markdown.count("\n") == len(["", "", "head", "rule", "row"])
 
 

@@ -34,8 +34,10 @@ def beams(length=600e-6):
     return xr.Dataset({"crack_length": ("beam", lengths), "state": ("beam", states)})
 
 
-ALL = pair_model_error.Settings((0.45, 0.6, 0.7, 0.9))
-DATA = {"a": pair_model_error.compute(study(), ALL)}, {("a", humidity): beams() for humidity in (0.45, 0.6, 0.7, 0.9)}
+DATA = (
+    {"a": pair_model_error.compute(study(), (0.45, 0.6, 0.7, 0.9))},
+    {("a", humidity): beams() for humidity in (0.45, 0.6, 0.7, 0.9)},
+)
 
 
 def test_the_table_states_the_error_of_every_case_and_marks_interpolated_ones():

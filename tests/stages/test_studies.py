@@ -433,11 +433,13 @@ def test_cases_of_a_variant_keep_the_beams_that_stick():
 def test_cases_of_a_pair_are_joined_from_dry_to_humid():
     def case(humidity):
         beams = [{"crack_length": np.array([humidity, 2 * humidity]), "state": np.array([0, 1])}]
-        return variant_beams.layout([humidity], [[1e-3 * humidity]], beams)
+        dataset = variant_beams.layout([humidity], [[1e-3 * humidity]], beams)
+        return dataset.assign_coords(pair="b", relative_humidity=humidity)  # the identity of its job
 
     found = variant_beams.by_pair(
         {("b", 0.8, "dry"): case(0.8), ("b", 0.655, "dry"): case(0.655), ("a", 0.9, "base"): case(0.9)}
     )
     assert list(found) == [("b", "dry"), ("a", "base")]
     assert_array_equal(found["b", "dry"].humidity, [0.655, 0.8])
+    assert_array_equal(found["b", "dry"].relative_humidity, [0.655, 0.8])
     assert_array_equal(found["b", "dry"].crack_length[:, 1], [1.31, 1.6])

@@ -12,7 +12,7 @@ from test_command import stiction
 from stiction.config.files import load
 from stiction.plan.graph import Graph, structured
 from stiction.plan.plan import Plan
-from stiction.plan.planner import WHOLE, Planner
+from stiction.plan.planner import ALL_TARGETS, Planner
 from stiction.run.disk_cache import DiskCache
 from stiction.run.logs import recorded_origins
 
@@ -63,7 +63,7 @@ def test_origins_differ_where_the_settings_of_any_job_behind_a_file_do(change):
 def test_what_jobs_note_from_the_labels_of_their_inputs_is_what_the_plan_expects(smoke):
     planner, _ = planned(CHANGES[-1])
     noted = recorded_origins(smoke / "results" / "logs")
-    wanted = {file for target in WHOLE for file in planner.files_of(target) if not file.endswith(".nc")}
+    wanted = {file for target in ALL_TARGETS for file in planner.files_of(target) if not file.endswith(".nc")}
     assert set(noted) >= wanted
     assert len(wanted) > 50
     assert noted == {file: planner.origin(file) for file in noted}

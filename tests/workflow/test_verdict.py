@@ -8,7 +8,7 @@ import pytest
 from conftest import snakemake
 
 from stiction.config.files import paper
-from stiction.plan.planner import WHOLE, Planner
+from stiction.plan.planner import ALL_TARGETS, Planner
 
 
 def verdict(folder):
@@ -45,7 +45,7 @@ def test_a_failed_check_fails_the_run_after_everything_else_and_the_report_is_ke
 
 def test_the_last_job_waits_for_every_other_file_of_a_whole_run():
     planner = Planner(paper(), {}, now, now)
-    wanted = {file for target in WHOLE for file in planner.files_of(target)}
+    wanted = {file for target in ALL_TARGETS for file in planner.files_of(target)}
     assert wanted - {*planner.before_last} == {"results/verdict.txt"}
     assert "results/tables/table_3.csv" in planner.before_last
 

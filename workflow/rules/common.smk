@@ -13,7 +13,7 @@ from stiction.command.run_state import RUN
 from stiction.config import files, merging, messages
 from stiction.config.tables import device_table
 from stiction.plan import cost, memory
-from stiction.plan.planner import WHOLE, Planner
+from stiction.plan.planner import ALL_TARGETS, Planner
 from stiction.plan.stage import WILDCARDS
 from stiction.run import provenance, run_lock, snakemake_patches, stale_results
 from stiction.run.atomic import DataError, save_text

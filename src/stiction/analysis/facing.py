@@ -71,17 +71,17 @@ def facing_coherence(upper: Scan, lower: Scan) -> FacingCoherence:
         if not scan.defined.all() or scan.frame != lower.frame:
             raise ScanError(scan.name, "files", f"must have heights at all points, and points and size of {lower.name}")
     upper_heights, lower_heights = (level(scan.heights, Levelling()) for scan in (upper, lower))
-    turned, both = [upper_heights[turn] for turn in _TURNS], []
+    turned, halves = [upper_heights[turn] for turn in _TURNS], []
     for half in (0, 1):
         shifts = [_shift(each, lower_heights, lower.frame, half) for each in turned]
         best = int(np.argmax([mean for mean, _ in shifts]))
-        both.append(_refined(turned[best], lower_heights, lower.frame, half, shifts[best][1]))
-    sums = np.sum([of_half for _, of_half in both], axis=0)
-    seen = np.flatnonzero(sums[-1] > _LEAST)
-    crossed, *powers, number = sums[:, seen]
+        halves.append(_refined(turned[best], lower_heights, lower.frame, half, shifts[best][1]))
+    sums = np.sum([of_half for _, of_half in halves], axis=0)
+    resolved = np.flatnonzero(sums[-1] > _LEAST)
+    crossed, *powers, number = sums[:, resolved]
     c = crossed / np.sqrt(np.prod(powers, axis=0))
     pixels, ends = np.array(lower.frame.pixel), _ends(lower.frame)
-    wavelength, shifts = np.sqrt(ends[:-1] * ends[1:])[seen], pixels * [shift for shift, _ in both]
+    wavelength, shifts = np.sqrt(ends[:-1] * ends[1:])[resolved], pixels * [shift for shift, _ in halves]
     return FacingCoherence(wavelength, c, (1 - c**2) / np.sqrt(number), shifts, float(pixels.max()))
 
 

@@ -149,10 +149,10 @@ def by_levels(value: Value, grids: Sequence[int], target: float) -> Ratio | None
             return None
         chain, needed = cheapest(values, target)
         ratio = _of_chain(values, chain)
-        wanted = {level: min(number, 2 * counts[level], _most(level)) for level, number in needed.items()}
-        if ratio.error <= target or all(number <= counts[level] for level, number in wanted.items()):
+        next_counts = {level: min(number, 2 * counts[level], _most(level)) for level, number in needed.items()}
+        if ratio.error <= target or all(number <= counts[level] for level, number in next_counts.items()):
             return ratio
-        counts |= {level: max(number, counts[level]) for level, number in wanted.items()}
+        counts |= {level: max(number, counts[level]) for level, number in next_counts.items()}
         counts |= {level: max(counts[level], counts[FINE]) for level in counts}
 
 

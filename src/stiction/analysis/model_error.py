@@ -45,9 +45,9 @@ def factors(
         changed, base = map(response, means.reshape(shape))
         return changed / base
 
-    both = np.stack([full, summits], axis=1).reshape(len(full), -1)
-    values, errors = jackknife(lambda means: interpolated(computed(means), humidities, at), both)
-    between = values * interpolation_error(np.log(computed(both.mean(axis=0))), humidities, at)
+    samples = np.stack([full, summits], axis=1).reshape(len(full), -1)
+    values, errors = jackknife(lambda means: interpolated(computed(means), humidities, at), samples)
+    between = values * interpolation_error(np.log(computed(samples.mean(axis=0))), humidities, at)
     return values, np.hypot(errors, between)
 
 
@@ -96,9 +96,9 @@ def beside_more(full: np.ndarray, summits: np.ndarray, more: np.ndarray) -> tupl
     off = summits - mean
     inverse = np.linalg.pinv(off)
     slopes, leverage = inverse @ (full - average), np.sum(off * inverse.T, axis=1, keepdims=True)
-    rest = (full - average - off @ slopes) / (1 - leverage * n / (n - 1))
+    residuals = (full - average - off @ slopes) / (1 - leverage * n / (n - 1))
     moved = more.mean(axis=0) + np.sqrt(n / len(more)) * off
-    return average + (moved - mean) @ slopes + rest - rest.mean(axis=0), moved
+    return average + (moved - mean) @ slopes + residuals - residuals.mean(axis=0), moved
 
 
 def scatter_ratios(

@@ -109,5 +109,5 @@ def _line(logarithms, differences):
     places = logarithms - logarithms.mean()
     square = places @ places
     factor, slope = differences.mean(), places @ differences / square
-    rest = differences - factor - slope * places
-    return factor, slope, rest @ rest, 1 / len(places), 1 / square
+    residuals = differences - factor - slope * places
+    return factor, slope, residuals @ residuals, 1 / len(places), 1 / square

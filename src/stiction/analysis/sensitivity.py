@@ -54,8 +54,8 @@ def one_sided(energies: np.ndarray, base: np.ndarray, at: Sequence[float]) -> tu
 
     def differences(means):
         """Both differences from the mean energies [-]."""
-        *changed, here = means.reshape(samples.shape[1:])
-        return np.array([(there / here - 1) / step for there, step in zip(changed, steps, strict=True)])
+        *changed, unchanged = means.reshape(samples.shape[1:])
+        return np.array([(energy / unchanged - 1) / step for energy, step in zip(changed, steps, strict=True)])
 
     return jackknife(differences, samples.reshape(len(samples), -1))
 

@@ -1,6 +1,22 @@
 """Numbers sought for devices: the largest length, or the smallest restoring force, of which few enough stick."""
 
 from dataclasses import dataclass
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
+
+#: Significant digits of sizes.
+DIGITS = 3
+#: Nine digits of a number do not show in which units or order it was computed.
+_COMPUTED = Context(prec=9)
+
+
+def as_computed(number: float) -> Decimal:
+    """Number without the digits that depend on how it was computed."""
+    return _COMPUTED.create_decimal(Decimal(float(number)))
+
+
+def rounded(bound: float, digits: int, up: bool) -> Decimal:
+    """Bound with some significant digits, never below it if ``up``, else never above."""
+    return Context(prec=digits, rounding=ROUND_CEILING if up else ROUND_FLOOR).plus(as_computed(bound)).normalize()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -30,6 +46,26 @@ class Sought:
         """Ratio above one if the requirement is met, in words."""
         of_device = self.required, self.response
         return " / ".join(of_device if self.more_is_better else reversed(of_device))
+
+    def safe(self, size: float) -> float:
+        """Size in the unit for readers, rounded to its safe side: lengths down, forces up.
+
+        Examples
+        --------
+        >>> LENGTH.safe(200.66e-6), FORCE.safe(12.341e-6)
+        (200.0, 12.4)
+        """
+        return float(rounded(size / self.scale, DIGITS, self.more_is_better))
+
+    def is_stricter(self, size: float, other: float) -> bool:
+        """Whether a size allows less than another one as readers see both.
+
+        Examples
+        --------
+        >>> LENGTH.is_stricter(199.9e-6, 200.66e-6), LENGTH.is_stricter(200.1e-6, 200.66e-6)
+        (True, False)
+        """
+        return self.sign * self.safe(size) < self.sign * self.safe(other)
 
     def in_words(self, number: float) -> str:
         """Number in the unit for readers.

@@ -135,7 +135,7 @@ class OfBudgets:
         surfaces = [_OF_SURFACE.format(member.surface) for budget in self.budgets.values() for member in budget.members]
         return tuple(dict.fromkeys([*surfaces, *of_slopes]))
 
-    def of(self, at: At) -> Slopes | None:
+    def budget(self, at: At) -> Slopes | None:
         """Budget of an air and end state, or the most uncertain one of this end state where too few devices stick."""
         slopes = self.budgets.get(at)
         if slopes is None or slopes.is_known:
@@ -145,7 +145,7 @@ class OfBudgets:
 
     def shift(self, at: At, draws: Draws, exact: frozenset[str]) -> np.ndarray:
         """Shift as of `Unknowns`."""
-        budget, shift = self.of(at), np.zeros(draws.number)
+        budget, shift = self.budget(at), np.zeros(draws.number)
         if budget is None:
             return shift
         errors = self._errors(draws)

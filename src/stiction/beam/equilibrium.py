@@ -33,8 +33,8 @@ SLOWER, FASTER = 0.5, 4.0
 #: on the paper's pairs a, b and c, seven do with nearly none and one with half of it.
 LEAST = 0.1
 #: The beam that moves with the crack front in every step reaches this many foundation lengths and this many elements
-#: ahead of it; the rest follows in every WHOLE-th step. A beam held closer to the front passes places of arrest.
-AHEAD, AHEAD_ELEMENTS, WHOLE = 12.0, 6, 64
+#: ahead of it; the rest follows in every FULL_PERIOD-th step. A beam held closer to the front passes places of arrest.
+AHEAD, AHEAD_ELEMENTS, FULL_PERIOD = 12.0, 6, 64
 
 
 @dataclass(frozen=True)
@@ -319,7 +319,7 @@ def _relax(u, laws, mesh, ahead, tolerance, max_iterations):
     Dashpots at the contact points make the beam creep downhill, so that the crack cannot jump over a place of arrest.
     Their viscosity [N/m] keeps the tangent positive definite and the steps short, and vanishes where it is not needed:
     the last steps are plain Newton. The open part of the crack is condensed; elements far ahead of the crack front are
-    updated only in every WHOLE-th step, those beyond ``ahead`` elements.
+    updated only in every FULL_PERIOD-th step, those beyond ``ahead`` elements.
     """
     elements, points = u.size // 2 - 1, mesh.points_per_element
     system, steepest, slope = _system(u, laws, mesh)
@@ -328,7 +328,7 @@ def _relax(u, laws, mesh, ahead, tolerance, max_iterations):
         first = _open(u, laws, mesh, first)
         reached, front = front, _front(system.stretch, points, max(first, front), elements)
         arrested = arrested and front == reached
-        all_elements = arrested or iteration % WHOLE == 0
+        all_elements = arrested or iteration % FULL_PERIOD == 0
         window = (first, elements if all_elements else min(front + ahead, elements))
         residual = _assemble(u, laws, system, mesh, 0, window, viscosity)
         settled = residual <= tolerance
@@ -354,8 +354,8 @@ def _points(beam, laws):
         If a coefficient other than d_max is negative, one is not finite, or the number of laws is no multiple of that
         of elements.
     """
-    points, rest = divmod(len(laws), beam.elements)
-    if rest:
+    points, remainder = divmod(len(laws), beam.elements)
+    if remainder:
         raise ValueError(f"{len(laws)} laws do not spread evenly over {beam.elements} elements")
     # Summits of soft or skewed surfaces can attract most where the mean planes are below each other, d_max < 0.
     broken = ~(np.isfinite(laws).all(axis=1) & (laws[:, [0, 2, 3]] >= 0).all(axis=1))

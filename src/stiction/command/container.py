@@ -12,8 +12,8 @@ _DOI, _RESOLVER = re.compile(r"10\.\d{4,9}/\S+"), "https://doi.org/"
 #: ASSUME: containers of contact.engineering have up to some hundred MB, their pages some kB; a slow network needs
 #: minutes [MiB, MiB, s].
 LARGEST, LARGEST_PAGE, LONGEST = 1000, 1, 900
-#: Time in which a server must answer or send more [s], size of the parts that are read, and of a MiB [bytes].
-_SILENCE, _PART, _MIB = 60, 2**16, 2**20
+#: Time in which a server must answer or send more [s], size of the chunks that are read, and of a MiB [bytes].
+_SILENCE, _CHUNK, _MIB = 60, 2**16, 2**20
 
 
 def content(source: str) -> bytes:
@@ -87,7 +87,7 @@ def _answer(address, largest, headers):
     with requests.get(address, headers=headers, stream=True, timeout=_SILENCE) as response:
         response.raise_for_status()
         received = bytearray()
-        for block in response.iter_content(_PART):
+        for block in response.iter_content(_CHUNK):
             received += block
             if len(received) > largest * _MIB:
                 raise RefusedError(f"{address} sends more than {largest:g} MiB: give a smaller container")

@@ -113,7 +113,7 @@ def _numbers(config, estimates, caches):
             numbers = accuracy.numbers(config, estimates, code, remember)
         return numbers and numbers.plain
 
-    return Numbers.of(_cached(caches, "numbers.json", "accuracy.py", [config, estimates], decide))
+    return Numbers.from_plain(_cached(caches, "numbers.json", "accuracy.py", [config, estimates], decide))
 
 
 def _cached(caches: Caches, file: str, module: str, determined_by: list, compute: Callable[[], Any]) -> Any:

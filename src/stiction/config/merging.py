@@ -160,8 +160,8 @@ def _in_place(config, copied, ends):
 
 def _parts_of_path(config, path):
     """Section, name of the entry, and key below it of a compared key. Raises a ConfigError without such an entry."""
-    section, _, rest = path.partition(".")
-    name, _, keys = rest.partition(".")
+    section, _, below = path.partition(".")
+    name, _, keys = below.partition(".")
     sections = {kind: config[kind] for kind in _NAMED if kind in config}
     if name in sections.get(section, ()):
         return section, name, keys

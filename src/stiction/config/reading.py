@@ -184,12 +184,12 @@ def _files(files, arguments):
 
 def _values(arguments, options):
     """Words after some options, up to the next option, and words attached to an option, as in -c2."""
-    taken = False
+    is_in_option = False
     for word in arguments:
         if word.startswith("-") and not _NEGATIVE.fullmatch(word):
             option, equals, value = word.partition("=") if word.startswith("--") else (word[:2], word[2:], word[2:])
-            taken = option in options
-            if taken and equals:
+            is_in_option = option in options
+            if is_in_option and equals:
                 yield value.removeprefix("=")
-        elif taken:
+        elif is_in_option:
             yield word

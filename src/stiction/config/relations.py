@@ -194,13 +194,13 @@ def spectra_suit_their_surfaces(config):
     for name, psd in config.entries("surfaces", "psd"):
         keys = config.names(f"surfaces.{name}")
         if "scans" not in keys:
-            which, sources = "without", ("published", "identified")
+            preposition, sources = "without", ("published", "identified")
         elif not any(key in _NUMBERS for key in keys):  # otherwise the relation above reports this
-            which, sources = "with", ("fitted", "tabulated")
+            preposition, sources = "with", ("fitted", "tabulated")
         else:
             continue
         if psd not in sources:
-            yield f"surfaces.{name}.psd", f"must be {' or '.join(sources)} for a surface {which} scans"
+            yield f"surfaces.{name}.psd", f"must be {' or '.join(sources)} for a surface {preposition} scans"
 
 
 @relation_of_names

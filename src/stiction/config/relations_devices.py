@@ -184,12 +184,12 @@ def probes_rise_above_the_film(config):
 @relation
 def probes_have_files_of_their_own(config):
     """Require another patch under each probe of a pair, which names its files."""
-    seen = {}
+    shapes = {}
     for name, pair in config.entries("devices", "pair"):
         device, kind = config["devices"][name], KINDS[config[f"devices.{name}.kind"]]
         sides = kind.sides(device, config[_STRIP])
         shape = kind.shape_of(device)
-        other, of_other = seen.setdefault((pair, *sides), (name, shape))
+        other, of_other = shapes.setdefault((pair, *sides), (name, shape))
         if shape != of_other:
             probe, flat = (name, other) if shape else (other, name)
             message = f"must differ from the area of {flat}, whose files would have the same names: state another one"
@@ -570,9 +570,9 @@ def arrays_of_devices_are_defined(config):
 def arrays_have_the_materials_of_their_devices(config):
     """Require test beams of the materials of their device."""
     for name, used in config.entries("devices", "test_beams"):
-        wanted = _names_of_materials(config, config["devices"][name]["pair"])
+        materials = _names_of_materials(config, config["devices"][name]["pair"])
         if other := next(
-            (array for array in used if _names_of_materials(config, pair_of(config, array)) != wanted), None
+            (array for array in used if _names_of_materials(config, pair_of(config, array)) != materials), None
         ):
             message = f"must have the materials of the device: those of {other} differ"
             yield f"devices.{name}.test_beams", message, *_keys_of_scans(config, name)

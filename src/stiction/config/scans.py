@@ -217,7 +217,7 @@ def labels(files: list[str]) -> list[str]:
 
 def digests(files: Mapping[str, str]) -> list[list[str]]:
     """Name and SHA-256 of every file, by label. Refuses equal contents, because scans are independent samples."""
-    seen = {}
+    label_of = {}
     for label, path in files.items():
         if obstacle := next((words for signs, words in _MISREAD.items() if re.search(signs, str(path))), None):
             raise ScanError(label, "files", f"has {obstacle} ({str(path)!r}): rename it")
@@ -225,10 +225,10 @@ def digests(files: Mapping[str, str]) -> list[list[str]]:
             content = digest(path)
         except OSError as reason:
             raise ScanError(label, "files", f"cannot be opened: {reason.strerror} ({str(path)!r})") from None
-        if content in seen:
-            raise ScanError(label, "files", f"has the same content as {seen[content]}; a scan counts once")
-        seen[content] = label
-    return [[Path(path).name, content] for path, content in zip(files.values(), seen, strict=True)]
+        if content in label_of:
+            raise ScanError(label, "files", f"has the same content as {label_of[content]}; a scan counts once")
+        label_of[content] = label
+    return [[Path(path).name, content] for path, content in zip(files.values(), label_of, strict=True)]
 
 
 #: Preliminary numbers that this process knows, by content, settings and code.

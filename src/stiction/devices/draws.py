@@ -34,7 +34,7 @@ class _Normal:
     root: np.ndarray  #: lower triangle, the covariance is its product with its transpose (r, r)
 
     @classmethod
-    def of(cls, draws: np.ndarray, weights: np.ndarray) -> "_Normal":
+    def from_draws(cls, draws: np.ndarray, weights: np.ndarray) -> "_Normal":
         """Fit the moments of weighted draws."""
         mean = weights @ draws
         apart = draws - mean
@@ -85,7 +85,7 @@ def weighted(
         weights = softmax(start - mixture + power * ratio)
         if power == 1:
             return draws, weights
-        normals.append(_Normal.of(draws, weights))
+        normals.append(_Normal.from_draws(draws, weights))
         more = normals[-1].draw(rng)
         mixture = np.concatenate([np.logaddexp(mixture, normals[-1].log_density(draws)), _density(normals, more)])
         draws, likelihood = np.concatenate([draws, more]), np.concatenate([likelihood, log_likelihood(more)])

@@ -234,7 +234,7 @@ def _next(laws, errors, deviations, target):
     before, ends = float(target.std()), [law.ends for law in laws]
     slopes, *_ = np.linalg.lstsq(np.concatenate(deviations, axis=1), target - target.mean(), rcond=1e-9)
     of_laws = np.split(slopes, np.cumsum([law.coefficients.size for law in laws])[:-1])
-    law_slopes = [part.reshape(law.coefficients.shape) for law, part in zip(laws, of_laws, strict=True)]
+    law_slopes = [of_law.reshape(law.coefficients.shape) for law, of_law in zip(laws, of_laws, strict=True)]
     settings = np.unique(np.concatenate([law.settings for law in laws]))
     candidates = np.sort([*settings, *(settings[1:] + settings[:-1]) / 2])
     low, high = max(end[0] for end in ends), min(end[1] for end in ends)

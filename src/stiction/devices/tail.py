@@ -98,5 +98,5 @@ def simulated_lines(
     scores = normal_scores(samples, fitted)
     k = len(scores)
     sums = np.cumsum(rng.exponential(size=(repeats, k)), axis=1)
-    rest = rng.gamma(samples + 1 - k, size=(repeats, 1))
-    return _lines(ndtri(sums / (sums[:, -1:] + rest)), scores)
+    beyond = rng.gamma(samples + 1 - k, size=(repeats, 1))
+    return _lines(ndtri(sums / (sums[:, -1:] + beyond)), scores)

@@ -27,14 +27,14 @@ def require_points(shape: Sequence[int], label: str) -> None:
 
 def inflated(content: bytes, label: str, form: int = zlib.MAX_WBITS) -> bytes:
     """Content of a stream of zlib, or of gzip (form 31), up to the limit. Raises ScanError beyond, zlib.error."""
-    blocks, rest = [], content
-    while rest:
+    blocks, compressed = [], content
+    while compressed:
         stream = zlib.decompressobj(form)
-        blocks.append(stream.decompress(rest, MOST_BYTES + 1))
+        blocks.append(stream.decompress(compressed, MOST_BYTES + 1))
         require_bytes(sum(map(len, blocks)), label)
         if not stream.eof:
             raise zlib.error("the stream ends too early")
-        rest = stream.unused_data.lstrip(b"\0")
+        compressed = stream.unused_data.lstrip(b"\0")
     return b"".join(blocks)
 
 

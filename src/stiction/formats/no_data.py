@@ -43,9 +43,9 @@ def without_marks(heights: np.ndarray) -> tuple[np.ndarray, str]:
     is_mark = (np.abs(values) > _IMPOSSIBLE) | np.isclose(values[:, None], MARKS, rtol=_ROUNDING, atol=0).any(axis=1)
     if not is_mark.any() or is_mark.all():
         return heights, ""
-    rest, most = values[~is_mark], int(counts[~is_mark].max())
-    away = np.maximum(values - rest[-1], rest[0] - values)
-    marks = is_mark & (away > rest[-1] - rest[0])
+    unmarked, most = values[~is_mark], int(counts[~is_mark].max())
+    away = np.maximum(values - unmarked[-1], unmarked[0] - values)
+    marks = is_mark & (away > unmarked[-1] - unmarked[0])
     doubtful = is_mark & ~marks & (counts >= max(_OFTEN, most + 1))
     if doubtful.any():
         raise ValueError(_doubt(values[doubtful][0], counts[doubtful][0]))
@@ -70,8 +70,8 @@ def require_no_mark(heights: np.ndarray) -> None:
     values, counts = np.unique(heights[np.isfinite(heights)], return_counts=True)
     if len(values) < _FEWEST:
         return
-    for value, count, rest in zip(values[[0, -1]], counts[[0, -1]], (values[1:], values[:-1]), strict=True):
-        if np.abs(rest - value).min() > np.ptp(rest) * (1 if count > 1 else _ALONE):
+    for value, count, others in zip(values[[0, -1]], counts[[0, -1]], (values[1:], values[:-1]), strict=True):
+        if np.abs(others - value).min() > np.ptp(others) * (1 if count > 1 else _ALONE):
             raise ValueError(_doubt(value, count))
 
 

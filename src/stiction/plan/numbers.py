@@ -18,7 +18,7 @@ class Numbers:
     errors: dict[Case, float]  #: largest of the lengths of each case [-]
 
     @classmethod
-    def of(cls, plain: dict[str, Any] | None) -> "Numbers | None":
+    def from_plain(cls, plain: dict[str, Any] | None) -> "Numbers | None":
         """Numbers from their plain form, as JSON gives it back."""
         return plain and cls(**plain | {"errors": {Case(case): error for case, error in plain["errors"].items()}})
 

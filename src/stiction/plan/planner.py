@@ -23,8 +23,8 @@ from stiction.run.provenance import version_of
 
 #: Folder of all results, and ending of datasets.
 RESULTS, DATASET = "results/", ".nc"
-#: Targets of a whole run.
-WHOLE = ("tables", "figures", "devices", "all")
+#: Targets of a run without named ones.
+ALL_TARGETS = ("tables", "figures", "devices", "all")
 
 
 class NotPlanned(ValueError):
@@ -126,7 +126,7 @@ class Planner:
 
     def _cost(self):
         """Sum over the jobs, see `cost`."""
-        jobs = self._graph.needed(*WHOLE)
+        jobs = self._graph.needed(*ALL_TARGETS)
         of_stages = {job.stage.name: job.stage.running.memory for job in jobs}
         memories = (round(needs(self.plan)) for needs in of_stages.values() if needs)
         megabytes = max(memory.job_memory(self.plan.config), *memories, 0)
@@ -136,7 +136,10 @@ class Planner:
     def before_last(self) -> list[str]:
         """Files of a whole run for which the last jobs wait."""
         return [
-            file for rule in self.rules if {*WHOLE} & {*rule["targets"]} and not rule["last"] for file in rule["wanted"]
+            file
+            for rule in self.rules
+            if {*ALL_TARGETS} & {*rule["targets"]} and not rule["last"]
+            for file in rule["wanted"]
         ]
 
     def code(self, rule: Mapping[str, Any]) -> dict[str, str | None]:

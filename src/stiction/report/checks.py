@@ -298,8 +298,8 @@ def surface_checks(
     for (surface, model), character in characters.items():
         used = heights[surface] if model == "NG" else {"skewness": 0.0, "kurtosis": 3.0}
         moments = targets.get(surface, {"rms_nm": TO_NM * float(heights[surface].rms)})
-        wanted = moments | {name: float(used[name]) for name in ("skewness", "kurtosis")}
-        yield from moments_meet_targets(f"{surface} {model}", character, wanted, defects[surface])
+        targets_of_model = moments | {name: float(used[name]) for name in ("skewness", "kurtosis")}
+        yield from moments_meet_targets(f"{surface} {model}", character, targets_of_model, defects[surface])
 
 
 def identification_checks(identifications: Mapping[str, xr.Dataset]) -> Iterator[Check]:
@@ -339,7 +339,7 @@ def trend_checks(
                 yield scatter_falls(case, drier, more_humid)
     for pair, humidity, model in forces:
         if model == "NG" and pair in skewed:
-            models = (forces[pair, humidity, which] for which in SURFACE_MODELS)
+            models = (forces[pair, humidity, heights] for heights in SURFACE_MODELS)
             yield skewness_increases_adhesion(f"{pair}, {Air(humidity).words}", *models)
 
 

@@ -87,7 +87,7 @@ def comparison_table(
     columns = {source.subject: (str, source.subject)} | HUMIDITY | source.more
     columns |= {key: ("g", column) for key, column in zip(keys, _columns(keys), strict=True)}
     columns |= {source.words: (with_error, *source.numbers)}
-    return Table.of(rows(table, source, ends).to_dict("records"), caption, columns)
+    return Table.from_rows(rows(table, source, ends).to_dict("records"), caption, columns)
 
 
 @styled

@@ -1,12 +1,12 @@
 """Units of tables and axes, and numbers as text: with a standard error, as a deviation, or alone."""
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
+from decimal import ROUND_FLOOR, Decimal
 from typing import Any
 
 import numpy as np
 
-from stiction.answer.sought import Sought
+from stiction.answer.sought import DIGITS, Sought, as_computed, rounded
 from stiction.config.mission.conditions import humidity_of
 from stiction.contact.air import DRY_AIR, Air, has_dry, humid
 
@@ -19,12 +19,8 @@ TO_NM, TO_UM, TO_UN, TO_MPA, TO_GPA, TO_MJ = 1e9, 1e6, 1e6, 1e-6, 1e-9, 1e3
 MISSING = "–"
 #: Part of a value below which its standard error is rounding.
 _ROUNDING = np.finfo(float).eps
-#: Significant digits of sizes.
-_DIGITS = 3
 #: Fraction beyond which digits of the rest are shown.
 _NEARLY_ALL = 0.99
-#: Nine digits of a number do not show in which units or order it was computed.
-_COMPUTED = Context(prec=9)
 
 
 def percent(value: float, reference: float) -> float:
@@ -64,9 +60,7 @@ def bounding(value: float, digits: int, up: bool) -> str:
     """
     if not np.isfinite(value) or not value:
         return number(value, "g")
-    computed = _COMPUTED.create_decimal(Decimal(float(value)))
-    kept = Context(prec=digits, rounding=ROUND_CEILING if up else ROUND_FLOOR)
-    return f"{kept.plus(computed).normalize():f}"
+    return f"{rounded(value, digits, up):f}"
 
 
 def safe_size(size: float, sought: Sought) -> str:
@@ -78,7 +72,7 @@ def safe_size(size: float, sought: Sought) -> str:
     >>> safe_size(200.66e-6, LENGTH), safe_size(12.341e-6, FORCE)
     ('200 µm', '12.4 µN')
     """
-    return f"{bounding(size / sought.scale, _DIGITS, sought.more_is_better)} {sought.shown}"
+    return f"{bounding(size / sought.scale, DIGITS, sought.more_is_better)} {sought.shown}"
 
 
 def lower_to(decimals: int) -> Callable[[float], str]:
@@ -94,7 +88,7 @@ def lower_to(decimals: int) -> Callable[[float], str]:
     def text(value):
         if not np.isfinite(value):
             return number(value, "g")
-        return str(_COMPUTED.create_decimal(Decimal(float(value))).quantize(step, ROUND_FLOOR))
+        return str(as_computed(value).quantize(step, ROUND_FLOOR))
 
     return text
 

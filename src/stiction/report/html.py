@@ -30,8 +30,8 @@ class _Loader(FileSystemLoader):
 
     def get_source(self, environment, template):
         """Source of a template (of scripts without comments and indentation), its file and whether it is new."""
-        source, *rest = super().get_source(environment, template)
-        return (_FOR_READERS.sub("", source) if template.endswith(".js") else source), *rest
+        source, *file_and_age = super().get_source(environment, template)
+        return (_FOR_READERS.sub("", source) if template.endswith(".js") else source), *file_and_age
 
 
 _ENVIRONMENT = Environment(
@@ -42,7 +42,9 @@ _ENVIRONMENT = Environment(
 def _kinds(cells):
     """Class of each column: long texts, which are broken, and words read from the left; numbers have none."""
     columns = [column.astype(str).str for _, column in cells.items()]
-    return ["text" if (one.len() > _LONG).any() else "word" * bool(one.fullmatch(_WORD).all()) for one in columns]
+    return [
+        "text" if (column.len() > _LONG).any() else "word" * bool(column.fullmatch(_WORD).all()) for column in columns
+    ]
 
 
 def with_minus(text: str) -> str:

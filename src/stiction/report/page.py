@@ -77,7 +77,7 @@ class Page:
     sections: Sequence[Section] = ()
     warnings: Sequence[str] = ()  #: where the model ends for this device
     words: Mapping[str, str] = field(default_factory=dict)  #: terms and what they mean
-    made: Sequence[str] = ()  #: when and by which code
+    run: Sequence[str] = ()  #: when it was computed, and by which code
     not_modelled: str = ""  #: what is not in the model
     drawing: str = ""  #: of the device, as SVG
     summary: Summary | None = None  #: its first screen

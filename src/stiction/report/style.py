@@ -318,7 +318,12 @@ def letter_lines(lines: Sequence[np.ndarray], names: Sequence[str], shown: Seque
     """
     names = iter(names)
     columns = [(line, list(islice(names, line.shape[1]))) for line in lines]
-    titles = [f"{name}{shown[k % len(shown)]}" for line, of in columns for k in range(line.shape[0]) for name in of]
+    titles = [
+        f"{name}{shown[k % len(shown)]}"
+        for line, names_of_line in columns
+        for k in range(line.shape[0])
+        for name in names_of_line
+    ]
     titled = zip(np.concatenate([line.ravel() for line in lines]), titles, strict=True)
     letter(*zip(*((panel, title) for panel, title in titled if panel.figure), strict=True))
 

@@ -52,7 +52,7 @@ class Table:
     cells: pd.DataFrame  #: the same for reading, as text
 
     @classmethod
-    def of(cls, rows: Iterable[Mapping[str, Any]], shows: str | Caption, columns: Columns) -> "Table":
+    def from_rows(cls, rows: Iterable[Mapping[str, Any]], shows: str | Caption, columns: Columns) -> "Table":
         """Table of rows of numbers, with their text in some columns."""
         frame = pd.DataFrame(rows)
         return cls(frame, shows, as_text(frame, columns))
@@ -75,8 +75,8 @@ class Table:
         - Too steep.
         - Too thin.
         """
-        lines = [f"- {part.sentence}" for part in self.parts if isinstance(part, Line)]
-        paragraph = " ".join(str(part) for part in self.parts if not isinstance(part, Line))
+        lines = [f"- {entry.sentence}" for entry in self.parts if isinstance(entry, Line)]
+        paragraph = " ".join(str(entry) for entry in self.parts if not isinstance(entry, Line))
         return "\n".join([paragraph, *([""] if lines else []), *lines])
 
     @property

@@ -19,8 +19,8 @@ _ORIGIN = {
     "order statistical moments of non-Gaussian contacting surfaces",
 }
 
-#: Size of the parts in which a file is written [bytes].
-_PART = 2**20
+#: Size of the chunks in which a file is written [bytes].
+_CHUNK = 2**20
 
 
 def save(
@@ -50,8 +50,8 @@ def save(
 def _fill(path, size):
     """Write a file of ``size`` zeros in parts, so large files take no memory."""
     with path.open("wb") as file:
-        for start in range(0, size, _PART):
-            file.write(bytes(min(_PART, size - start)))
+        for start in range(0, size, _CHUNK):
+            file.write(bytes(min(_CHUNK, size - start)))
 
 
 def load(path: str | Path, stage: str, **parts: slice) -> xr.Dataset:

@@ -176,10 +176,10 @@ def _errors(inspection, model, model_scans, of_sizes, described):
     closed_form = inspection.propagated(_covariances(inspection, model, model_scans))
     of_tiles = [tile_errors(maps.levelled, inspection.settings.tiles) ** 2 for maps in inspection.counted]
     by_tiles = np.sqrt(inspection.propagated(of_tiles))
-    here = closed_form if described else widened(closed_form, by_tiles)
-    places = _places(inspection, model, of_sizes, np.diag(here) / np.diag(closed_form))
+    covariance = closed_form if described else widened(closed_form, by_tiles)
+    places = _places(inspection, model, of_sizes, np.diag(covariance) / np.diag(closed_form))
     return {
-        "covariance": elsewhere(here, places[:3]),
+        "covariance": elsewhere(covariance, places[:3]),
         "closed_form_errors": np.sqrt(np.diag(closed_form)),
         "tile_errors": by_tiles,
         "places": places,

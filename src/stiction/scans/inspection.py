@@ -65,7 +65,7 @@ class Maps:
     floor_left: Floor  #: floor that stays in heights and spectrum, because no heights are left without it
 
     @classmethod
-    def of(cls, alike: Mapping[int, Scan], settings: Settings) -> "Maps":
+    def from_scans(cls, alike: Mapping[int, Scan], settings: Settings) -> "Maps":
         """Level scans of the same size and number of points, by their numbers."""
         scans = list(alike.values())
         frame = scans[0].frame
@@ -299,7 +299,7 @@ def inspect(scans: Sequence[Scan], settings: Settings) -> Inspection:
         If a scan has no part without holes that is large enough, or if the scans are too small to give a spectrum.
     """
     names = ", ".join(scan.name for scan in scans)
-    groups = [Maps.of(alike, settings) for alike in by_size(scans, settings.undefined_share)]
+    groups = [Maps.from_scans(alike, settings) for alike in by_size(scans, settings.undefined_share)]
     sizes = tuple(sorted(groups, key=lambda maps: _extent(maps.complete_frame), reverse=True))
     try:
         fitted, rings, within = _fitted(sizes)

@@ -115,7 +115,7 @@ def _likely(chi2, freedom):
 
 def _joint_floor(rings, nyquist, start):
     """Floor of rings up to the Nyquist wave number by a fit with Eq. (7). Zero if it is not needed or contradicted."""
-    waves = _Waves.of(rings.wavenumber, nyquist)
+    waves = _Waves.from_rings(rings.wavenumber, nyquist)
     without, *fits = (_noisy(rings, waves, np.inf, start, floor) for floor in (False, True))
     if without.likely and not _better(fits[0], without):
         return Floor()
@@ -150,7 +150,7 @@ class _Waves:
     share: np.ndarray  #: of the directions of the ring that each stands for [-]
 
     @classmethod
-    def of(cls, wavenumber, nyquist):
+    def from_rings(cls, wavenumber, nyquist):
         """Waves of rings (n,) themselves, and in some directions their aliases."""
         angle = np.pi / 4 * (np.arange(_DIRECTIONS) + 0.5) / _DIRECTIONS
         folded = np.array([shift for shift in product((0, -2, 2), repeat=2) if any(shift)]) * nyquist
@@ -181,12 +181,12 @@ class _Noisy:
 
 def _noisy(rings, waves, end, start, floor=True):
     """Fit plateau, corner, slope and floor of a spectrum with this end."""
-    seen = waves.up_to(end)
+    up_to_end = waves.up_to(end)
 
     def total(parameters):
         """Spectrum in the rings relative to its plateau, with the floor [-]."""
-        form = seen.share * shape(seen.wavenumber, *parameters[:2])
-        return np.bincount(seen.ring, form, len(rings.density)) + (np.exp(parameters[2]) if floor else 0.0)
+        form = up_to_end.share * shape(up_to_end.wavenumber, *parameters[:2])
+        return np.bincount(up_to_end.ring, form, len(rings.density)) + (np.exp(parameters[2]) if floor else 0.0)
 
     def objective(parameters):
         """Half of the deviance per weight of the rings, at the best plateau."""

@@ -114,15 +114,15 @@ def rings(spectrum: Periodogram, inside: np.ndarray | None = None) -> Rings:
     counted = np.broadcast_to(~spectrum.near_slow_axis if inside is None else inside, radius.shape)
     number = np.where(counted, np.rint(radius * min(spectrum.size) / (2 * np.pi)).astype(np.int32), -1)
     count = np.bincount(number[counted])
-    taken = np.flatnonzero(count)
+    occupied = np.flatnonzero(count)
     wavenumber, density = (
-        np.bincount(number[counted], values[counted])[taken] / count[taken] for values in (radius, spectrum.power)
+        np.bincount(number[counted], values[counted])[occupied] / count[occupied] for values in (radius, spectrum.power)
     )
     modes = spectrum.scans / 2 * count**2 / np.maximum(_correlated(number, count, spectrum.correlation), 1)
     share = (density / (density + spectrum.floor)) ** 2
-    hidden = (density < spectrum.floor) & ((density < 0) | (modes[taken] * share < _SEEN**2))
+    hidden = (density < spectrum.floor) & ((density < 0) | (modes[occupied] * share < _SEEN**2))
     density, share = (np.where(hidden, 0.0, values) for values in (density, share))
-    return Rings(wavenumber, density, share * modes[taken], share * spectrum.independence * count[taken])
+    return Rings(wavenumber, density, share * modes[occupied], share * spectrum.independence * count[occupied])
 
 
 def _correlated(number, count, correlation):

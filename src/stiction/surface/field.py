@@ -113,7 +113,7 @@ class RoughSurface:
         """Draw the waves of the standard Gaussian field at all places of `modes`, (n,) complex64."""
         position, amplitude, columns = self.modes
         waves = np.zeros(columns * self.grid.field_shape[0], np.complex64)
-        _place(standard_normal(rng, 2 * len(position)), amplitude, position, waves.view(np.float32))
+        _scatter(standard_normal(rng, 2 * len(position)), amplitude, position, waves.view(np.float32))
         return waves
 
     def add_waves(self, heights: np.ndarray, waves: np.ndarray) -> None:
@@ -134,7 +134,7 @@ class RoughSurface:
 
 
 @kernel
-def _place(normals, amplitude, position, parts):
+def _scatter(normals, amplitude, position, parts):
     """Write the waves to their places: real and imaginary parts (2 n,), from normal numbers (2 n,) and amplitudes."""
     for k in range(position.size):
         real = np.uint64(2 * position[k])  # without a sign, so that it cannot count from the end

@@ -23,7 +23,7 @@ from stiction.plan.graph import Results
 from stiction.stages.contact import contact
 from stiction.stages.contact.curves import force_curves
 from stiction.stages.contact.pairs import bodies, streams_of_sides, surface_pair
-from stiction.stages.surfaces.rough_surfaces import both
+from stiction.stages.surfaces.rough_surfaces import sides_of
 from stiction.streams import stream
 
 WIDTH, STEP = 10e-6, 0.2e-9
@@ -53,14 +53,14 @@ def by_both_models(pair, humidity, number):
     results = Results.of(load({"beam": {"width_um": 1e6 * WIDTH}}))
     job = results.graph.job(f"studies/full_contact/{pair}")
     settings = replace(job.stage.converted(job.settings), strips=number)
-    surfaces = both(results.inputs(job))
+    surfaces = sides_of(results.inputs(job))
     summits = force_curves(contact.compute(surfaces, pair, "NG", settings, range(number)), humidity, settings.water)
     base, limit = forcelaw.parametrise(*summits)
     strips, materials = surface_pair(surfaces, "NG", settings), bodies(settings)
     streams = streams_of_sides(settings.seed, pair)
     space = HalfSpace(strips.beam.grid.shape, strips.beam.grid.spacing, solids.composite_modulus(*materials))
     attraction = solids.attraction_between(*materials, settings.van_der_waals)
-    adhesion = elements.Adhesion.of(settings.water.film(humidity), attraction, space)
+    adhesion = elements.Adhesion.from_film(settings.water.film(humidity), attraction, space)
     found = []
     for k in range(number):
         at = partial(_state, space, strips.draw(*streams(k)), adhesion)

@@ -107,7 +107,7 @@ def shifted(base, energy, pull_off):
 
 def test_the_variant_of_full_contact_is_corrected_where_predictions_are_not():
     """Ratios of a study are not applied to predictions, which stay on summits: the variant shows what they do."""
-    error = pair_model_error.compute(study(), pair_model_error.Settings(HUMIDITIES))
+    error = pair_model_error.compute(study(), HUMIDITIES)
     job = Graph(Plan(load({"run": {"studies": ["full_contact", "variants"]}}))).job(
         "studies/variants/b_rh067_contact_full"
     )
@@ -155,7 +155,7 @@ def test_surfaces_without_condensation_have_the_ratios_of_dry_air_at_any_humidit
 
 def test_the_error_in_dry_air_is_that_of_its_strips_and_changes_no_humid_one():
     dry = study(energy=(0.5, 0.6, 1.0)).assign_coords(humidity=[0, 0.44, 0.92])
-    at = pair_model_error.Settings((0, 0.3, 0.44, 0.6, 0.92))
+    at = 0, 0.3, 0.44, 0.6, 0.92
     found = pair_model_error.compute(dry, at)
     alone = pair_model_error.compute(dry.isel(humidity=[1, 2]), at)
     assert float(found.energy_ratio[0]) == pytest.approx(0.5)
@@ -169,8 +169,7 @@ def test_the_error_in_dry_air_is_that_of_its_strips_and_changes_no_humid_one():
 
 
 def test_the_error_of_a_pair_is_interpolated_between_the_computed_humidities_and_marked():
-    wanted = pair_model_error.Settings((0.92, 0.55, 0.44, 0.67, 0.4), (0.44, 0.55, 0.67, 0.92))
-    found = pair_model_error.compute(study(), wanted)
+    found = pair_model_error.compute(study(), (0.92, 0.55, 0.44, 0.67, 0.4), (0.44, 0.55, 0.67, 0.92))
     assert found.humidity.values.tolist() == [0.4, 0.44, 0.55, 0.67, 0.92]
     assert found.interpolated.values.tolist() == [True, False, True, False, False]
     assert np.isnan(found.energy_ratio[0])
@@ -262,7 +261,7 @@ def test_gaussian_surfaces_and_errors_of_fits_are_not_corrected():
 
 def test_a_stopper_is_corrected_by_the_ratio_of_the_forces():
     wanted = stoppers.Settings(1, WATER, (6e-6, 1.5e-6), (0.67,), (0.5, 0.8), restoring_force=2e-5)
-    error = pair_model_error.compute(study(), pair_model_error.Settings(HUMIDITIES, HUMIDITIES))
+    error = pair_model_error.compute(study(), HUMIDITIES, HUMIDITIES)
     full = corrections.with_correction(wanted, {"model_error": error})
     base, found = (stoppers.compute(small.contact_of_pair(), one) for one in (wanted, full))
     assert_allclose(found.pull_off, 0.95 * base.pull_off)

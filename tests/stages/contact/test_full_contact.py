@@ -20,7 +20,7 @@ from stiction.plan.plan import Plan
 from stiction.stages.contact import curves, full_contact, pair_model_error
 from stiction.stages.contact.pairs import bodies
 from stiction.stages.laws import forces
-from stiction.stages.surfaces.rough_surfaces import both
+from stiction.stages.surfaces.rough_surfaces import sides_of
 
 #: Configuration with fewer strips than a study must have.
 FEW = merged(small.PLAN.config, {"studies": {"full_contact": {"samples": 2}}})
@@ -77,8 +77,7 @@ def test_means_in_dry_air_are_those_beside_the_summits_of_more_strips(monkeypatc
     _, summits = full_contact.moved_models(beside)
     np.testing.assert_allclose(summits.mean(axis=0), beside.more.mean("more_samples"))
     assert_array_equal(full_contact.moved_models(alone)[1, ..., 0], alone.summit_energy)
-    air = pair_model_error.Settings((0.0,))
-    ratio, plain = (float(pair_model_error.compute(each, air).energy_ratio[0]) for each in (beside, alone))
+    ratio, plain = (float(pair_model_error.compute(each, [0.0]).energy_ratio[0]) for each in (beside, alone))
     full, summits = full_contact.moved_models(beside).mean(axis=1)[:, 0, 0]
     assert ratio == pytest.approx(full / summits)
     assert ratio != pytest.approx(plain, rel=1e-3)
@@ -241,7 +240,7 @@ def test_between_humidities_the_true_ratios_are_within_two_stated_errors(pair, s
     job = results.graph.job(f"studies/full_contact/{pair}")
     at = tuple(sorted((*job.settings["humidities"], *between)))
     settings = replace(small.settings_of(full_contact, job.settings), humidities=at, strips=strips)
-    found = full_contact.compute(both(results.inputs(job)), pair, settings)
+    found = full_contact.compute(sides_of(results.inputs(job)), pair, settings)
     of_interpolation = []
     for quantity in (full_contact.energies, full_contact.pull_offs):
         humidities, *models = quantity(found)

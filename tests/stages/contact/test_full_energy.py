@@ -245,7 +245,7 @@ def pair_model_error_without_tips():
 def test_dry_air_keeps_its_own_corrections_beside_humid_air():
     dry = study().isel(humidity=[0]).assign_coords(humidity=[0.0])
     joined = corrections.applied(pair_model_error.of_devices(BY_HUMIDITY, dry))
-    alone = pair_model_error.compute(dry, pair_model_error.Settings((0.0,), (0.0,)))
+    alone = pair_model_error.compute(dry, [0.0], [0.0])
     for change, expected in zip(joined.at(0.0), corrections.applied(alone).at(0.0), strict=True):
         assert change == pytest.approx(expected)
     assert joined.at(0.44)[0].ratio == pytest.approx(0.7)

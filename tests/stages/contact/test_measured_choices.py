@@ -59,7 +59,7 @@ def estimated(plan):
 
 def surfaces(plan, estimated):
     """Datasets (heights, spectrum) of both surfaces of pair b."""
-    found = heights.compute(estimated, small.settings_of(heights, job_settings(plan, "heights/Etched")))
+    found = heights.compute(estimated, **job_settings(plan, "heights/Etched"))
     settings = small.settings_of(spectrum, job_settings(plan, "spectrum/Etched"))
     return (found, spectrum.compute(estimated, found, settings)), small.surfaces()[1]
 
@@ -201,7 +201,7 @@ def test_modes_of_a_surface_with_the_heights_of_its_moments_are_those_of_its_mea
 @pytest.mark.parametrize(("form", "names"), [("moments", MOMENT_QUANTITIES), ("measured", MODE_QUANTITIES)])
 def test_the_budget_of_a_device_takes_the_covariance_of_the_estimate(files, estimated, form, names):
     plan = plan_of(files, heights=form)
-    drawn = heights.compute(estimated, small.settings_of(heights, job_settings(plan, "heights/Etched")))
+    drawn = heights.compute(estimated, **job_settings(plan, "heights/Etched"))
     found = inputs.scan_errors(estimated, drawn)
     assert found.quantities == (*names, *SPECTRUM_QUANTITIES)
     of_heights = estimated.covariance if form == "moments" else estimated.mode_covariance

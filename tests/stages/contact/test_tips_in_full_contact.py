@@ -16,7 +16,7 @@ from stiction.contact.tilt import Tilt, length_of_edge
 from stiction.plan.graph import Results
 from stiction.stages.contact import corrections, full_contact, pair_model_error, tips_in_full_contact
 from stiction.stages.contact.tips_in_full_contact import TipsAtSlope
-from stiction.stages.surfaces.rough_surfaces import both
+from stiction.stages.surfaces.rough_surfaces import sides_of
 
 NM, UM = 1e-9, 1e-6
 #: Beam on the surface of pair b with half of its rms, in dry air.
@@ -47,7 +47,7 @@ def settings():
 
 @cache
 def few():
-    return tips_in_full_contact.compute(both(results().inputs(job())), "b", replace(settings(), strips=3))
+    return tips_in_full_contact.compute(sides_of(results().inputs(job())), "b", replace(settings(), strips=3))
 
 
 def test_strips_have_the_width_the_slopes_and_the_edge_of_the_tips_and_their_number_grows_only_if_it_is_not_stated():
@@ -64,7 +64,7 @@ def test_the_study_has_both_models_at_every_slope_and_a_sample_does_not_depend_o
     assert few().sizes == {"strip": 3, "slope": 3, "humidity": 1}
     assert np.all(few().force > 0)
     assert np.all(few().summit_force > 0)
-    alone = tips_in_full_contact.compute(both(results().inputs(job())), "b", replace(settings(), strips=1))
+    alone = tips_in_full_contact.compute(sides_of(results().inputs(job())), "b", replace(settings(), strips=1))
     assert alone.equals(few().isel(strip=slice(1)))
     assert len(np.unique(few().summit_force)) == few().summit_force.size
 
@@ -73,7 +73,7 @@ def test_strips_are_drawn_until_the_accuracy_or_the_most(monkeypatch):
     for accuracy, number in ((0.0, 5), (np.inf, 3)):
         monkeypatch.setattr(tips_in_full_contact, "ACCURACY", accuracy)
         at = replace(settings(), strips=3, most=5, tilt=replace(settings().tilt, slopes=(0.05,)))
-        assert tips_in_full_contact.compute(both(results().inputs(job())), "b", at).sizes["strip"] == number
+        assert tips_in_full_contact.compute(sides_of(results().inputs(job())), "b", at).sizes["strip"] == number
 
 
 @pytest.mark.parametrize(("slope", "radius"), [(0.03, 0.1 * UM), (0.03, 1 * UM), (0.1, 0.1 * UM)])
@@ -88,7 +88,7 @@ def test_a_stiff_smooth_tip_on_a_peak_is_held_by_the_water_on_its_wedge_and_its_
         sampling=replace(given.sampling, strip_length=tilt.before + tilt.reach / slope),
         beam=replace(given.beam, width=2 * UM),
     )
-    pair = tips_in_full_contact.surface_pair(both(results().inputs(job())), "NG", own)
+    pair = tips_in_full_contact.surface_pair(sides_of(results().inputs(job())), "NG", own)
     pair = replace(pair, asperity=HertzAsperity(1e12))
     heights, row = np.zeros(pair.beam.grid.shape, np.float32), round(tilt.before / pair.spacing) + 1
     heights[row, ::5] = peak  # beside where the edge begins
@@ -103,7 +103,7 @@ def test_a_stiff_smooth_tip_on_a_peak_is_held_by_the_water_on_its_wedge_and_its_
 
 def test_the_change_of_tips_is_that_of_the_study_and_reaches_every_tip():
     of_strips = full_contact.layout(np.random.default_rng(1).gamma(9, size=(8, 1, 9)), (0.0,), 10 * NM)
-    error = pair_model_error.compute(of_strips, pair_model_error.Settings((0.0,), (0.0,)), few())
+    error = pair_model_error.compute(of_strips, [0.0], [0.0], tips=few())
     full, summits = tips_in_full_contact.models(few())
     assert_allclose(error.tip_ratio, full.mean(axis=0) / summits.mean(axis=0))
     scatters = [np.sqrt(np.mean(np.log(np.mean(each**2, axis=0) / each.mean(axis=0) ** 2))) for each in (full, summits)]
@@ -120,7 +120,7 @@ def test_tips_between_the_slopes_and_of_wider_beams_hold_as_predicted():
     """Full contact of strips 30 µm wide at two slopes between those of the study, beside predictions of others."""
     wanted = [float(np.sqrt(a * b)) for a, b in zip(settings().tilt.slopes, settings().tilt.slopes[1:], strict=False)]
     changes = corrections.applied(results(30)["studies/model_error/dry/b"]).of_tips(0.0, wanted)
-    surfaces = both(results().inputs(job()))
+    surfaces = sides_of(results().inputs(job()))
     at = replace(
         settings(),
         seed=settings().seed + 1,

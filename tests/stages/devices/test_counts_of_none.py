@@ -8,7 +8,7 @@ import xarray as xr
 from answers import CANTILEVER, STOPPER, STOPPERS, beam_page, of_length, silent, stopper_dataset, stopper_page
 from hypothesis import given
 from hypothesis import strategies as st
-from test_stage_life import STOPPER as IN_USE
+from lives import STOPPER as IN_USE
 
 from stiction.contact.correction import NONE
 from stiction.devices.risk import stuck_share, upper_bound

@@ -7,9 +7,9 @@ import pytest
 import small
 import xarray as xr
 from ground import R1, safe_with_tips, safe_without_tips
+from lives import OF
 from numpy.testing import assert_allclose, assert_array_equal
 from plans import job_settings
-from test_stage_life import OF
 
 from stiction.config.files import load
 from stiction.config.units import in_si

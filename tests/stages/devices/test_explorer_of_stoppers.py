@@ -6,9 +6,9 @@ import answered
 import numpy as np
 import pytest
 import small
+from lives import STOPPER as LIFE
 from numpy.testing import assert_allclose
 from test_at_voltage import at
-from test_stage_life import STOPPER as LIFE
 from test_stage_stoppers import SETTINGS
 
 from stiction.contact.voltage import Capacitor, Dielectric

@@ -7,9 +7,9 @@ import pytest
 import small
 import xarray as xr
 from answers import stopper_dataset
+from lives import STOPPER
 from numpy.testing import assert_allclose
 from test_at_voltage import at
-from test_stage_life import STOPPER
 
 from stiction.constants import HAMAKER_CONSTANT
 from stiction.contact.environment import Gaps

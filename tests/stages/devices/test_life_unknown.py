@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from answers import stopper_dataset
 from ground import C1, R1, safe_with_tips, safe_without_tips
-from test_stage_life import OF, STOPPER, UNSTATED
+from lives import OF, STOPPER, UNSTATED
 
 from stiction.contact.voltage import Dielectric
 from stiction.devices.risk import samples_for

@@ -13,7 +13,8 @@ import small
 import xarray as xr
 from answers import stopper_dataset
 from ground import SURFACES, WATER, lognormal_cracks, smooth_tips, wanted
-from test_stage_life import OF, STOPPER, answers, at_voltage
+from lives import OF, STOPPER
+from test_stage_life import answers, at_voltage
 
 from stiction.config.files import load
 from stiction.contact.correction import NONE

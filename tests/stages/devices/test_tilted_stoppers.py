@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 import small
 from answers import stopper_dataset
+from lives import STOPPER
 from numpy.testing import assert_allclose, assert_array_equal
 from plans import job_settings
-from test_stage_life import STOPPER
 
 from stiction.config.files import load
 from stiction.config.units import in_si

@@ -256,7 +256,7 @@ def test_energies_from_single_scans_are_those_of_the_surface_within_the_known_er
         # Equal cut-offs give equal random numbers.
         exact = replace(spectrum, cutoff=end, floor=spectrum.plateau * (end / spectrum.corner) ** spectrum.slope)
         truth = energies_of((true, stage_spectrum.on_grid(exact, true, 10e-9)), settings)
-        heights = measured_heights.compute(found, measured_heights.Settings("Etched", "moments"))
+        heights = measured_heights.compute(found, "Etched", "moments")
         for of, kept in ((heights, ratios), (true, by_spectrum)):
             beam = of, measured_spectrum.compute(found, of, use)
             kept.append(np.log(energies_of(beam, settings) / truth))

@@ -210,7 +210,7 @@ def test_errors_of_two_scans_are_those_of_one_over_the_root_of_two():
 
 
 def test_heights_have_the_density_of_the_estimated_moments(through_a_file):
-    found = through_a_file(heights.compute(b2(), heights.Settings("Etched", "moments")))
+    found = through_a_file(heights.compute(b2(), "Etched", "moments"))
     assert stage_heights.density(found, "NG") == estimate.density(b2(), "moments")
     moments = stage_heights.moments(found)
     assert_allclose([np.log(moments.rms), moments.skewness, moments.kurtosis], b2().moments, rtol=1e-12)
@@ -226,7 +226,7 @@ def infeasible(feasible):
 
 def test_moments_near_a_density_are_replaced_and_both_are_stated():
     nearest = Feasible(None, -0.3, 3.2, 1.5)
-    found = heights.compute(infeasible(nearest), heights.Settings("Etched", "moments"))
+    found = heights.compute(infeasible(nearest), "Etched", "moments")
     assert stage_heights.moments(found).kurtosis == 3.2
     assert stage_heights.measured_moments(found) == (-0.1, 3.3, 1.5)
     assert "skewness -0.1 and kurtosis 3.3" in stage_heights.substitution(found)
@@ -235,13 +235,13 @@ def test_moments_near_a_density_are_replaced_and_both_are_stated():
 def test_without_a_density_of_the_moments_the_error_names_surface_files_and_remedy():
     message = "surfaces.Etched.heights is moments, but no .* skewness -0.1 and kurtosis 3.3 of B2-scan-0.spm, B2-scan-1"
     with pytest.raises(ValueError, match=message + ".*; heights: measured does not need one"):
-        heights.compute(infeasible(None), heights.Settings("Etched", "moments"))
-    found = heights.compute(infeasible(None), heights.Settings("Etched", "measured"))
+        heights.compute(infeasible(None), "Etched", "moments")
+    found = heights.compute(infeasible(None), "Etched", "measured")
     assert stage_heights.measured_moments(found).distance == 0
 
 
 def test_measured_heights_are_the_quantiles_of_the_scans(through_a_file):
-    found = through_a_file(heights.compute(b2(), heights.Settings("Etched", "measured")))
+    found = through_a_file(heights.compute(b2(), "Etched", "measured"))
     density = stage_heights.density(found, "NG")
     inside = np.abs(b2().score) <= density.scores[-1]
     assert_allclose(density.quantile_of_normal(density.scores), b2()["quantile"][inside], atol=0.02)
@@ -259,7 +259,7 @@ def test_measured_heights_are_the_quantiles_of_the_scans(through_a_file):
 def spectrum_with(found=None, use=USE, spacing=10e-9, **choices):
     """Dataset of the spectrum of B2, fitted and cut unless chosen otherwise."""
     found = b2() if found is None else found
-    drawn = heights.compute(found, heights.Settings("Etched", choices.pop("heights", "moments")))
+    drawn = heights.compute(found, "Etched", choices.pop("heights", "moments"))
     return spectrum.compute(
         found, drawn, spectrum.Settings(**{"psd": "fitted", "beyond": "cut"} | choices, spacing=spacing, use=use)
     )

@@ -163,7 +163,7 @@ def _of_options(arguments, library):
     sections = _sections(arguments)
     solids = solids_of(_SIDES if arguments.angles else (None, None), sections)
     more = {"averaged": arguments.like is None, "solids": solids} | temperature_of(sections)
-    return kind.of(_NAME, device, sides, **more)
+    return kind.question(_NAME, device, sides, **more)
 
 
 def _refuse_beyond(arguments):
@@ -178,7 +178,7 @@ class _Kind(NamedTuple):
     """Kind of a device that options state."""
 
     name: str  #: in a file
-    of: Callable[..., Any]  #: question, as `stiction.estimate.question.of_numbers`
+    question: Callable[..., Any]  #: as `stiction.estimate.question.of_numbers`
     needed: tuple[str, ...]  #: options that it needs
     strange: dict[str, str]  #: options of other kinds, and these in words
 

@@ -192,10 +192,10 @@ def air_has_one_temperature_at_a_humidity(config):
         for key, humidity, temperature in [*_other_airs(config, pair), *airs(config.config, pair)]:
             before, other = temperatures.setdefault(humidity, (temperature, key))
             if before != temperature:
-                another = f"{humidity + 10**-DECIMALS:.4g}"
+                allowed = f"{humidity + 10**-DECIMALS:.4g}"
                 yield (
                     key,
-                    f"must have another humidity than {humidity:g}, such as {another}, at another temperature",
+                    f"must have another humidity than {humidity:g}, such as {allowed}, at another temperature",
                     other,
                 )
 

@@ -45,7 +45,7 @@ class CountedHalfSpace(HalfSpace):
     effort: Effort = field(kw_only=True)
 
     @classmethod
-    def of(cls, space: HalfSpace, effort: Effort) -> "CountedHalfSpace":
+    def from_space(cls, space: HalfSpace, effort: Effort) -> "CountedHalfSpace":
         """Half-space like another one."""
         return cls(**{each.name: getattr(space, each.name) for each in fields(space)}, effort=effort)
 

@@ -82,7 +82,7 @@ class Adhesion:
     work: np.ndarray | None = None  #: across the gaps `GAPS`, if solids attract each other there [J m⁻²]
 
     @classmethod
-    def of(
+    def from_film(
         cls,
         film: tuple[float, float],
         solids: DugdaleAttraction | None,

@@ -31,7 +31,7 @@ class Level:
     )  #: the one that settled last first
 
     @classmethod
-    def of(cls, every: int, fine: HalfSpace, adhesion: Callable[[HalfSpace], Adhesion]) -> "Level":
+    def from_fine(cls, every: int, fine: HalfSpace, adhesion: Callable[[HalfSpace], Adhesion]) -> "Level":
         """Level of the elements of the fine grid, with the adhesion on its elements.
 
         Raises

@@ -54,12 +54,16 @@ _LABEL = {"xycoords": ("axes fraction", "data"), "va": "bottom", "fontsize": 7, 
 
 @styled
 def ladder(answer: Answer) -> Figure:
-    """Draw the steps from the estimate to the size to build that are known, one row each, and beside them P(stuck)."""
+    """Draw the steps from the estimate to the size to build that are known, one row each, and beside them P(stuck).
+
+    The legend of P(stuck) is below its own panel.
+    """
     figure, grid = panels(1, 2, (2 * SINGLE, _AROUND + _ROW * len(answer.known_steps)))
     _steps(grid[0, 0], answer)
     _stuck(grid[0, 1], answer, stricter=textwrap.fill(f"stricter: {'; '.join(words.stricter(answer))}", _LINE))
     grid[0, 1].set_ylabel(_STUCK)
-    _explain(figure, [grid[0, 1]])
+    if entries := handles(grid[0, 1])[0]:
+        legend_below(grid[0, 1], entries)
     return figure
 
 
@@ -171,9 +175,8 @@ def _stuck(panel: Axes, answer, stricter=_IN_TITLES):
 
 def _stricter(panel, answer, scale, label):
     """Marks of the sizes that are stricter than the size to build, at the allowed fraction; these sizes."""
-    beside = [one.size for one in (answer.between, *answer.unasked) if one]
-    build = safe_size(answer.build, answer.sought)
-    sizes = [size / scale for size in beside if safe_size(size, answer.sought) != build]  # as they are stated
+    beside = [limit.size for limit in (answer.between, *answer.unasked) if limit]
+    sizes = [size / scale for size in beside if answer.sought.is_stricter(size, answer.build)]
     if sizes:
         panel.plot(sizes, [answer.share] * len(sizes), **_STRICTER, label=label)
     return sizes

@@ -54,7 +54,7 @@ def devices(answers: Mapping[str, Answer]) -> Table:
     if any(answer.pull_offs for answer in answers.values()):
         rows = [row | _of_places(answer) for row, answer in zip(rows, answers.values(), strict=True)]
         columns, shows = columns | _COLUMNS_OF_PLACES, (*shows, *_PLACES)
-    return Table.of([_without_noise(row) for row in rows], shows, columns)
+    return Table.from_rows([_without_noise(row) for row in rows], shows, columns)
 
 
 #: What columns about probes show.
@@ -185,7 +185,7 @@ def builds(
     sizes = {name: answer.build if answer else np.nan for name, answer in allowed.items()}
     betweens = {name: answer.between if answer else None for name, answer in allowed.items()}
     unasked = {
-        name: {one.name: one.size for one in answer.unasked} if answer else {} for name, answer in allowed.items()
+        name: {limit.name: limit.size for limit in answer.unasked} if answer else {} for name, answer in allowed.items()
     }
     return sizes, betweens, unasked
 

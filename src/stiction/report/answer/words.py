@@ -165,27 +165,22 @@ def to_build(answer: Answer) -> str:
 def stricter(answer: Answer) -> list[str]:
     """Stricter sizes of airs between the stated ones, which are interpolated, and of what nothing stated asks for."""
     at, between = answer.between, []
-    if at and _is_stricter(answer, at.size):
+    if at and answer.sought.is_stricter(at.size, answer.build):
         between = [f"{safe_size(at.size, answer.sought)} between these airs (interpolated: state RH {at.humidity:.2g})"]
     return between + unasked(answer)
 
 
 def unasked(answer: Answer) -> list[str]:
     """Stricter sizes of what nothing that is stated asks for."""
-    limits = [limit for limit in answer.unasked if _is_stricter(answer, limit.size)]
+    limits = [limit for limit in answer.unasked if answer.sought.is_stricter(limit.size, answer.build)]
     return [f"{safe_size(limit.size, answer.sought)} {_unless(limit)}" for limit in limits]
 
 
-def _is_stricter(answer, size):
-    """Whether a size is stricter than the one to build as both are stated."""
-    return safe_size(size, answer.sought) != safe_size(answer.build, answer.sought)
-
-
-def _unless(one):
+def _unless(limit):
     """What a limit that nothing stated asks for is about, after its size."""
-    if one.name.startswith(Name.COLLAPSE):
-        return f"if {one.name.removeprefix(f'{Name.COLLAPSE}_')} dries on it"
-    return _UNLESS.get(one.name, f"by its {one.what.partition(':')[0]}")
+    if limit.name.startswith(Name.COLLAPSE):
+        return f"if {limit.name.removeprefix(f'{Name.COLLAPSE}_')} dries on it"
+    return _UNLESS.get(limit.name, f"by its {limit.what.partition(':')[0]}")
 
 
 def promise(answer: Answer) -> str:
@@ -221,7 +216,7 @@ def decides(answer: Answer) -> str:
     held = "tip" if answer.is_by_tip else held
     stuck = "" if answer.sought.more_is_better else f", stuck by {'the ' if held != 'beam or tip' else ''}{held}"
     sentence = f"{_air(answer, last.humidity)}{_among_airs(answer)}{stuck}."
-    if answer.between and _is_stricter(answer, answer.between.size):
+    if answer.between and answer.sought.is_stricter(answer.between.size, answer.build):
         sentence += f" Between them, RH {answer.between.humidity:.2g} is worse."
     change = largest.factor - 1
     if not np.isfinite(change) or abs(change) < _SAME:

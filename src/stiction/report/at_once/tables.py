@@ -111,7 +111,7 @@ def table(estimates: Mapping[str, xr.Dataset], sizes: Sizes = SIZES["length"]) -
     rows = [row for name, dataset in estimates.items() for row in _rows(name, dataset)]
     refused = [f"{name}: {sentence}" for name, dataset in estimates.items() for sentence in refusals(dataset)]
     shows = sizes.caption, counted(list(estimates.values()), sizes), *map(Line, refused)
-    return Table.of(rows, shows, DEVICE | sizes.columns)
+    return Table.from_rows(rows, shows, DEVICE | sizes.columns)
 
 
 def _rows(device, dataset) -> Iterator[dict[str, Any]]:
@@ -170,7 +170,7 @@ def section(dataset: xr.Dataset) -> Section:
     if not np.isfinite(dataset.estimate).any():
         return Section(_TITLE, refusals(dataset))
     sizes = sizes_of(dataset)
-    cells = Table.of(_rows("", dataset), "", HUMIDITY | sizes.columns).cells
+    cells = Table.from_rows(_rows("", dataset), "", HUMIDITY | sizes.columns).cells
     sentences = [" ".join([sizes.caption, counted([dataset], sizes)]), *refusals(dataset)]
     return Section(_TITLE, sentences, cells, missing=_MISSING)
 

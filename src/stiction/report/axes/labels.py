@@ -18,11 +18,11 @@ _PLACES, _ENOUGH = 25, 0.15
 
 @dataclass(frozen=True)
 class Label:
-    """Words beside a line, next to a place of it or at one of its ends."""
+    """Words beside a line, next to a position on it or at one of its ends."""
 
     text: str
     color: object
-    place: float | None = None  #: along the axis, in its unit
+    position: float | None = None  #: along the axis, in its unit
 
 
 @dataclass(frozen=True)
@@ -56,16 +56,16 @@ def put(panel: Axes, level: float, labels: list[Label]) -> None:
     to_parts = panel.transData + panel.transAxes.inverted()
     curves = [to_parts.transform(line.get_xydata()) for line in panel.lines if line.get_transform() == panel.transData]
     curves = [finite for curve in curves if len(finite := curve[np.isfinite(curve).all(axis=1)])]
-    height, taken = float(to_parts.transform((panel.get_xlim()[0], level))[1]), []
+    height, filled = float(to_parts.transform((panel.get_xlim()[0], level))[1]), []
     for label in labels:
-        at = None if label.place is None else float(to_parts.transform((label.place, level))[0])
+        at = None if label.position is None else float(to_parts.transform((label.position, level))[0])
         width = (
             _CHARACTER * _SIZE / 72 * max(map(len, label.text.splitlines())) / (_FILLED * panel.figure.get_figwidth())
         )
         rooms = list(_rooms(at, width))
-        unused = [room for room in rooms if not any(room.meets(other) for other in taken)]
+        unused = [room for room in rooms if not any(room.meets(other) for other in filled)]
         room = max(unused or rooms, key=lambda room: room.free(curves, height))
-        taken.append(room)
+        filled.append(room)
         _write(panel, level, label, room)
 
 

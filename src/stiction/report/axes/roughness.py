@@ -91,10 +91,10 @@ def _enough(curve, humidity, shape):
     sought = sought_of(curve)
     required = f"{float(curve.required) / UM:g} {sought.shown}"
     by_beam = f"a {sought.name} of {required} ({END_STATES[shape].by})"
-    wanted = f"a {sought.required} of {required}" if sought.more_is_better else by_beam
+    requirement = f"a {sought.required} of {required}" if sought.more_is_better else by_beam
     ranges = axes_of(curve)[0].ranges(ranges_of(curve, humidity, shape))
     where = _where(curve.sel(humidity=humidity, shape=shape), axes_of(curve)[0], ranges)
-    return f"For {wanted}, {airs([humidity])}, {where}"
+    return f"For {requirement}, {airs([humidity])}, {where}"
 
 
 def _where(curve, axis: Axis, ranges):
@@ -149,14 +149,20 @@ def ranges_of(curve: xr.Dataset, humidity: float, shape: str) -> np.ndarray:
 
 
 def sure_in_short(curve: xr.Dataset, humidity: float, shape: str) -> str:
-    """Where the simulated limit of a curve meets the requirement, in a few words for a picture."""
+    """Where the simulated limit of a curve meets the requirement, in a few words for a picture.
+
+    Nothing is sure where a stricter end state decides: the words then have the condition under which it does not.
+    """
     axis, ranges = axes_of(curve)[0], ranges_of(curve, humidity, shape)
     computed = axis.values[curve.safe.sel(humidity=humidity, shape=shape).notnull().values]
-    parts = [_part(axis, ends, computed) for ends in ranges]
-    return f"sure {' or '.join(parts)}" if parts else "nowhere sure"
+    parts = [_range(axis, ends, computed) for ends in ranges]
+    if not parts:
+        return "nowhere sure"
+    where, only_if = " or ".join(parts), END_STATES[shape].only_if
+    return f"enough {where}, {only_if}" if only_if else f"sure {where}"
 
 
-def _part(axis: Axis, ends, computed):
+def _range(axis: Axis, ends, computed):
     """Range in words, without an end that is one of all known values."""
     (low, high), is_open = ends, np.isclose(ends, computed[[0, -1]], rtol=1e-9, atol=0)
     if is_open.all():

@@ -44,7 +44,7 @@ def of_roughness(datasets: Mapping[str, xr.Dataset]) -> Table:
         for name, column in _OF_ROUGHNESS.items()
         if name not in shown or any(shown[name] in row for row in rows)
     }
-    return Table.of(rows, shows, columns)
+    return Table.from_rows(rows, shows, columns)
 
 
 def of_processes(
@@ -86,7 +86,7 @@ def _of_margins(curves, laws, sentences, makes):
     )
     is_map = any("second_value" in row for row in rows)
     columns = {name: column for name, column in _OF_PROCESSES.items() if is_map or name not in _SECOND}
-    return Table.of(rows, [caption, *map(Line, sentences)], columns)
+    return Table.from_rows(rows, [caption, *map(Line, sentences)], columns)
 
 
 def _rows(device: str, curves: xr.Dataset) -> Iterator[dict]:

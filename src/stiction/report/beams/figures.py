@@ -182,8 +182,8 @@ def _rows_of_panels(pairs, published):
     heights = [height for has_shares in apart for height in _HEIGHTS[: 1 + has_shares]]
     size = DOUBLE, sum(heights) + 0.6
     figure, axes = panels(len(heights), 2, size, beside=True, sharex="row", sharey="row", height_ratios=heights)
-    rest = iter(axes)
-    return figure, axes, [(next(rest), next(rest) if has_shares else None) for has_shares in apart]
+    unused = iter(axes)
+    return figure, axes, [(next(unused), next(unused) if has_shares else None) for has_shares in apart]
 
 
 def _kinds(below):
@@ -204,7 +204,7 @@ def _labels_meet(released, published):
 
 def _shares(released, model):
     """Share of S-shaped beams at every humidity [-]."""
-    by_humidity = sorted((humidity, beams) for (humidity, which), beams in released.items() if which == model)
+    by_humidity = sorted((humidity, beams) for (humidity, beam_model), beams in released.items() if beam_model == model)
     return [(humidity, float(ends_as(beams, "S-shape").mean())) for humidity, beams in by_humidity]
 
 
@@ -275,7 +275,7 @@ def _reach(beams):
 def _draw_simulated(panel, released, model):
     """Mean and standard deviation over the S-shaped beams of every humidity."""
     marker, colour = _MARKERS[model]
-    points = [(humidity, _energies(beams)) for (humidity, which), beams in released.items() if which == model]
+    points = [(humidity, _energies(beams)) for (humidity, beam_model), beams in released.items() if beam_model == model]
     bars = [(humidity, e.mean(), e.std(ddof=1)) for humidity, e in points if len(e) > 1]
     humidities, means, deviations = np.reshape(bars, (-1, 3)).T
     style = {"fmt": marker, "color": colour, "markeredgecolor": "black", "markeredgewidth": 0.4}

@@ -35,8 +35,8 @@ _COLOUR = MODELS["NG"]["color"]
 _PALE, _FULL = {"color": "0.75", "linewidth": 0.4}, {"color": _COLOUR, "linewidth": 0.6}
 #: Largest side of the shown part of the surface [m].
 _SHOWN = 5e-6
-#: Height of the part over its width on a page [-].
-_PART = 0.6
+#: Height of the shown part of the surface over its width on a page [-].
+_ASPECT = 0.6
 #: Number of highlighted force curves.
 _HIGHLIGHTED = 8
 #: A force curve is drawn until its attraction has decayed to the first share of the largest attraction, and up to the
@@ -70,8 +70,8 @@ def overview(
     _lengths(lengths, released, rows(published, pair=pair))
     letter(axes, ["rough surface", "adhesive force", "released beams", "crack length"])
     if is_page():
-        for panel, place in zip(axes[1:], ("lower right", "upper right", "best"), strict=True):
-            panel.legend(loc=place)
+        for panel, corner in zip(axes[1:], ("lower right", "upper right", "best"), strict=True):
+            panel.legend(loc=corner)
     else:  # small panels have no room
         legend_outside(figure, handles(*axes), "lower", 8)
     return figure
@@ -82,10 +82,10 @@ def _surface(figure, panel, character):
     spacing = float(character.x[1] - character.x[0])
     points = min(int(_SHOWN / spacing), *character.elevation.shape)
     side = TO_UM * points * spacing
-    part = _PART if is_page() else 1.0
-    elevation = TO_NM * character.elevation.values[:points, : round(part * points)].T
+    aspect = _ASPECT if is_page() else 1.0
+    elevation = TO_NM * character.elevation.values[:points, : round(aspect * points)].T
     low, high = np.quantile(elevation, (0.002, 0.998))
-    image = panel.imshow(elevation, origin="lower", extent=(0, side, 0, part * side), vmin=low, vmax=high)
+    image = panel.imshow(elevation, origin="lower", extent=(0, side, 0, aspect * side), vmin=low, vmax=high)
     panel.set(xlabel="$x_1$ [µm]", ylabel="$x_2$ [µm]")
     figure.colorbar(image, ax=panel, label="height $z$ [nm]", fraction=0.06, pad=0.02, shrink=0.9)
 
@@ -136,7 +136,7 @@ def _lengths(panel, released, published):
         style = {"color": PUBLISHED, "markerfacecolor": "white", "fmt": "^:", "zorder": 3, "label": "published"}
         panel.errorbar(published.relative_humidity + _APART, published.geo, published.geo_std, **style)
     # Model GEO, scattered dimensions, where it was computed.
-    model = "GEO" if any(which == "GEO" for _, which in released) else "NG"
+    model = "GEO" if any(beam_model == "GEO" for _, beam_model in released) else "NG"
     points = sorted(key for key in released if key[1] == model)
     stuck = [TO_UM * stuck_lengths(released[key]) for key in points]
     placed = places([*(humidity for humidity, _ in points), *published.relative_humidity])

@@ -53,7 +53,7 @@ def with_intervals(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
     }
     parts = []
     for pair, table in frame.groupby("pair", sort=False):
-        others = [both for other, both in measured.items() if other != pair]
+        others = [lengths_of_pair for other, lengths_of_pair in measured.items() if other != pair]
         if len(others) >= PAIRS:
             middle = np.log(lengths.crack_length_um[lengths.pair == pair]).mean()
             parts.append(_ends(table, Discrepancy.learnt(others), middle))

@@ -63,7 +63,7 @@ def table_3(
     ]
     columns = {title: column for title, column in _TABLE_3.items() if by_scans or "scans" not in title}
     columns |= (beside.COLUMN if errors else {}) | (prediction.COLUMNS if predicted is not None else {})
-    return Table.of(rows, shows, columns)
+    return Table.from_rows(rows, shows, columns)
 
 
 #: What columns of Table III show.
@@ -184,7 +184,7 @@ def fit_quality(fits: Mapping[Outcome, xr.Dataset]) -> Table:
     caption = (
         "Fit by Eq. (12): relative error of the curve for d ≥ d_limit, mean ± standard error, and of the energy ē."
     )
-    return Table.of((_row_fit(key, fit) for key, fit in fits.items()), caption, _FIT)
+    return Table.from_rows((_row_fit(key, fit) for key, fit in fits.items()), caption, _FIT)
 
 
 def _row_fit(key, fit):
@@ -231,7 +231,7 @@ def resampling(
         "Effect of the chaos model on the crack length, model NG: mean under laws drawn from it, and under laws of the "
         "samples themselves, drawn with replacement; ± standard error over beams."
     )
-    return Table.of((_row_resampling(key, beams[key], resampled[key]) for key in beams), caption, _RESAMPLING)
+    return Table.from_rows((_row_resampling(key, beams[key], resampled[key]) for key in beams), caption, _RESAMPLING)
 
 
 def _row_resampling(key, beams, resampled):

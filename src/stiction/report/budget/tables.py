@@ -86,7 +86,7 @@ def stoppers(
     listed = [f"{device}: {sentence}" for device, of_device in warnings.items() for sentence in words.texts(of_device)]
     shows += [*([column.caption(errors)] if errors else []), not_modelled, *warned(listed)]
     columns = _columns_of_stoppers(rows) | (_WORST if humid else {}) | (column.COLUMN if errors else {})
-    return Table.of(rows, shows, columns)
+    return Table.from_rows(rows, shows, columns)
 
 
 def _stopper_rows(device, dataset):

@@ -155,7 +155,7 @@ def parts(studies: Mapping[str, xr.Dataset], full: Mapping[str, xr.Dataset]) -> 
             for cause, (factor, error) in factors.items():
                 row |= {f"{cause}_percent": 100 * (factor[k] - 1), f"{cause}_se_percent": 100 * error[k]}
             rows.append(row)
-    return Table.of(rows, _PARTS, PAIR | _COLUMNS_OF_PARTS)
+    return Table.from_rows(rows, _PARTS, PAIR | _COLUMNS_OF_PARTS)
 
 
 def _energies_of_models(study, of_full):

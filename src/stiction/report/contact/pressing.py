@@ -60,8 +60,8 @@ def _press(study, number):
     ratios = {}
     for column, (name, unit) in (columns | {"flattening_nm": ("flattening", TO_NM)}).items():
         mean, error = mean_with_error(unit * study[name].values)
-        nothing = 0.0 if column == "pressure_MPa" else np.nan
-        of_press = (mean[number - 1], error[number - 1]) if number else (nothing, nothing)
+        without_press = 0.0 if column == "pressure_MPa" else np.nan
+        of_press = (mean[number - 1], error[number - 1]) if number else (without_press, without_press)
         ratios |= dict(zip((column, f"{column}_se"), of_press, strict=True))
     return ratios
 

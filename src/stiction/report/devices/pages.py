@@ -73,17 +73,17 @@ def device_page(name: str, section: Mapping[str, Any], data: Mapping[str, Any], 
     """
     sections, sentences, listed, words = _of_question(section).parts(name, section, data, answer)
     budgets, errors, test_beams, roughness = (data.get(key) for key in ("budgets", "errors", "test_beams", "roughness"))
-    of_model, told = model_errors.sentences(name, errors), []
+    of_model, notes = model_errors.sentences(name, errors), []
     limits = judged.limits_of(name, data["warnings"])
     if test_beams is not None:
         of_beams = tables_test_beams.warnings(test_beams)
-        told, listed, limits = [tables_test_beams.notes(test_beams)], listed + texts(of_beams), [*of_beams, *limits]
+        notes, listed, limits = [tables_test_beams.notes(test_beams)], listed + texts(of_beams), [*of_beams, *limits]
     forbidding = texts(dict.fromkeys(limit for limit in limits if limit.forbids))
     first, *others = of_model or [_NO_ERROR]
     of_first, below = ("", [first, *others]) if of_model and answer.is_by_tip else (first, others)
     shown = screen.screen(answer, section, forbidding, of_first)
     briefly = [] if roughness is None else sentences_roughness.briefly(roughness)
-    sentences = [*sentences, *filter(None, told), *briefly, *below]
+    sentences = [*sentences, *filter(None, notes), *briefly, *below]
     sections = [*_steps(answer), *sections, *_sure(name, budgets or {}, errors), *_test_beam_sections(name, test_beams)]
     sections += _how_rough(name, roughness)
     terms = words | _words_of_budgets(budgets)
@@ -188,8 +188,8 @@ def _how_rough(name, roughness):
     cells = tables_axes.of_roughness({name: roughness}).cells.drop(columns="device")
     of_map = "other" in roughness.dims
     sentences = [*sentences_roughness.answers(roughness), sentences_roughness.form(roughness)]
-    asked = "How closely may it follow?" if roughness.key in OF_COPIES else "How rough must it be?"
-    sections = [Section(asked, sentences, cells, figures_axes.roughness(roughness))]
+    question = "How closely may it follow?" if roughness.key in OF_COPIES else "How rough must it be?"
+    sections = [Section(question, sentences, cells, figures_axes.roughness(roughness))]
     if of_map:
         sections.append(Section("Over two quantities", _OF_MAPS, None, figures_axes.roughness_map(roughness)))
     return sections
@@ -214,8 +214,8 @@ def _inputs(plan, at):
     inputs |= {"life": f"devices/life/{at.device}"} if at.device in devices.with_life else {}
     inputs |= {"budgets": {key[1:]: name for key, name in budgets.items()}}
     inputs |= {"warnings": device_warnings.files_of(at.device)[at.device]} | model_errors.error_inputs(plan, at.device)
-    asked = {"test_beams": "devices/test_beams/rerun", "roughness": "devices/roughness"}
-    inputs |= {key: f"{folder}/{at.device}" for key, folder in asked.items() if key in section}
+    folders = {"test_beams": "devices/test_beams/rerun", "roughness": "devices/roughness"}
+    inputs |= {key: f"{folder}/{at.device}" for key, folder in folders.items() if key in section}
     inputs |= process_section.inputs(plan, at.device) | tables_at_once.inputs(plan, at.device)
     inputs |= {"style": File(STYLE), "templates": [File(GLOSSARY), *html.files(TEMPLATE), *drawings.FILES]}
     return inputs | _of_question(section).inputs(plan, at.device)
@@ -290,7 +290,7 @@ def _save(page, paths):
     record = Path(paths["html"]).parents[1] / "provenance.json"
     study = differing(provenance.recorded_runs(record)[-1]["config"], paper())
     explorer = page.explorer and page.explorer | {"study": {key: study[key] for key in study if key != "devices"}}
-    save_text(replace(page, made=provenance.last_run(record), explorer=explorer).html, paths["html"])
+    save_text(replace(page, run=provenance.last_run(record), explorer=explorer).html, paths["html"])
     save_text("".join(f"{html.with_minus(sentence)}\n" for sentence in page.lines), paths["answer"])
 
 

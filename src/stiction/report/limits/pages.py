@@ -54,7 +54,7 @@ def _of_worst(limits, subjects):
 
 def as_markdown(limits: Limits, not_modelled: Mapping[str, Any]) -> str:
     """Page of limits, each sentence with all its subjects, and a sentence on effects not in the model."""
-    lines = [f"- {literal(one)}" for one in sentences(by_limit(limits))]
+    lines = [f"- {literal(text)}" for text in sentences(by_limit(limits))]
     none = ["No result is beyond the limits of the model that are checked."]
     ends = literal(words.not_modelled(**not_modelled))
     return "\n".join(["# Where results are beyond the model", "", *(lines or none), "", ends, ""])
@@ -69,7 +69,7 @@ def as_json(limits: Limits) -> str:
 def of_json(text: str) -> list[tuple[Limit, list[Subject]]]:
     """Different limits with their subjects, the inverse of `as_json`; none of an empty text."""
     return [
-        (restored(fields), [Subject(name, tuple(which)) for name, which in subjects])
+        (restored(fields), [Subject(name, tuple(words_of_subject)) for name, words_of_subject in subjects])
         for stored in json.loads(text or "[]")
         for subjects, fields in [(stored.pop("subjects"), stored)]
     ]

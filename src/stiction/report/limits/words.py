@@ -509,8 +509,8 @@ def lines_with_numbers(limits: Mapping[Any, Iterable[Limit]], others: Iterable[L
 
 def _line(line, numbers):
     """Limits of a line in words, with the numbers of those that have one."""
-    said, marks = worst(line), [numbers[limit] for limit in line if limit in numbers]
-    parts = [*([listed(marks)] if marks else []), text(said)]
+    shown, marks = worst(line), [numbers[limit] for limit in line if limit in numbers]
+    parts = [*([listed(marks)] if marks else []), text(shown)]
     parts += [f"This is the worst of {len(line)}."] * (len(line) > 1)
-    parts += [_ALSO[limit.kind](**limit.numbers) for limit in line if limit not in numbers and limit != said]
+    parts += [_ALSO[limit.kind](**limit.numbers) for limit in line if limit not in numbers and limit != shown]
     return " ".join(parts)

@@ -43,7 +43,7 @@ def scans(
         "its size. The moments of the surface, without the bias of levelling, are in the title of its sheet."
     )
     flags = [f"{name}: {flag}" for name, sentences in limits.items() for flag in sentences]
-    return Table.of(rows, [caption, *map(Line, flags)], _SCANS)
+    return Table.from_rows(rows, [caption, *map(Line, flags)], _SCANS)
 
 
 def _scans(name, estimate, maps):
@@ -94,7 +94,7 @@ def scan_uncertainty(studies: Mapping[str, xr.Dataset]) -> Table:
             "for heights, to the scans. Scans measure the shape of the height density less precisely than the moments.",
         ),
     )
-    return Table.of(rows, shows, _UNCERTAINTY | _choice_columns(rows))
+    return Table.from_rows(rows, shows, _UNCERTAINTY | _choice_columns(rows))
 
 
 def _rows(pair, study, k):

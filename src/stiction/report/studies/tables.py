@@ -155,10 +155,10 @@ def _summary(key, group):
     pair, name = key
     base, first = name == "base", group.iloc[0]
     row = {"pair": pair, "variant": variant_label(name)}
-    for which, end in (("low RH", first), ("high RH", group.iloc[-1])):
+    for air, end in (("low RH", first), ("high RH", group.iloc[-1])):
         for title, column in (("Δl_s", "shift"), ("Δē", "meso_energy_shift")):
             change = with_error(end[f"{column}_percent"], end[f"{column}_se_percent"], "+")
-            row[f"{title} [%], {which}"] = MISSING if base else change
+            row[f"{title} [%], {air}"] = MISSING if base else change
     for title, column in (("published", "published_um"), ("measured", "experiment_um")):
         rms = _rms_deviation(group, column)
         row[f"rms dev. from {title} [%]"] = with_error(*(100 * x for x in rms)) if rms else MISSING
@@ -171,11 +171,11 @@ def _removed_fraction(group, base):
     compared = (group.published_um.notna() & group.crack_length_um.notna()).values & base.crack_length_um.notna().values
     if not compared.any() or group is base:
         return np.nan, np.nan
-    here, there = group[compared], base[compared]
-    lengths = [group_or_base.crack_length_um.values for group_or_base in (here, there)]
-    errors = [here.shift_se_percent.values / 100 * lengths[1]]
-    errors += [there[f"crack_length_{cause}_se_um"].values for cause in ("beams", "pairs")]
-    return comparison.removed_share(*lengths, here.published_um.values, errors)
+    changed, unchanged = group[compared], base[compared]
+    lengths = [group_or_base.crack_length_um.values for group_or_base in (changed, unchanged)]
+    errors = [changed.shift_se_percent.values / 100 * lengths[1]]
+    errors += [unchanged[f"crack_length_{cause}_se_um"].values for cause in ("beams", "pairs")]
+    return comparison.removed_share(*lengths, changed.published_um.values, errors)
 
 
 def _rms_deviation(group, column):

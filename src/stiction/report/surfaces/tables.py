@@ -64,7 +64,7 @@ def table_1(
         "Table I: simulated value ± standard error (value simulated in the paper). The measured values (AFM) are in "
         "the columns _afm of the CSV file."
     ) + "".join(notes)
-    return Table.of(rows, caption, _TABLE_1)
+    return Table.from_rows(rows, caption, _TABLE_1)
 
 
 def _row_1(surface, model, character, measured, published):
@@ -115,7 +115,7 @@ def table_2(
         "deviations from the measured (AFM) rms, summit radius and density, on surfaces not used to identify; defect: "
         "share of the variance that no Gaussian field provides, of the spectrum in use."
     )
-    return Table.of(chain.from_iterable(rows_of), caption, _TABLE_2)
+    return Table.from_rows(chain.from_iterable(rows_of), caption, _TABLE_2)
 
 
 def _rows_2(surface, fit, published, defects):

@@ -66,9 +66,11 @@ def beams_to_add(update: xr.Dataset) -> str:
     if not update.sizes["further"]:
         return ""
     worst = int(np.nanargmax(update.result_after.values))
-    left = update.result_after_further.isel(result=worst)
-    best = int(np.nanargmin(left.isel(beams=0).values))
-    after = [f"{in_percent(deviation)} with {int(deviation.beams)} beams" for deviation in left.isel(further=best)]
+    deviations = update.result_after_further.isel(result=worst)
+    best = int(np.nanargmin(deviations.isel(beams=0).values))
+    after = [
+        f"{in_percent(deviation)} with {int(deviation.beams)} beams" for deviation in deviations.isel(further=best)
+    ]
     return (
         f"Further test beams would help most with the dimensions and in the air of {update.further.values[best]}, at "
         f"least {TO_UM * float(update.further_length[best]):.0f} µm long: the standard uncertainty of the result for "
@@ -204,7 +206,7 @@ def test_beams(datasets: Mapping[str, xr.Dataset]) -> Table:
     )
     missing = {"measured"} - {name for row in rows for name in row}
     columns = {name: column for name, column in _COLUMNS.items() if name not in missing}
-    return Table.of(rows, [caption, *map(Line, sentences)], columns)
+    return Table.from_rows(rows, [caption, *map(Line, sentences)], columns)
 
 
 def _data(device, update):
@@ -258,11 +260,11 @@ def _safe_sizes(device, update):
             for share in update.share.values:
                 at = of_shape.sel(share=share)
                 label = f"{END_STATES[shape].safe}, p = {share:g}"
-                yield head | {"part": f"{label} [{unit}]"} | _both(at, "safe", "updated_safe", TO_UM)
+                yield head | {"part": f"{label} [{unit}]"} | _compared(at, "safe", "updated_safe", TO_UM)
                 if "share" in update.expected_stuck.dims:
-                    yield head | {"part": f"stuck at the {label}, of column before [%]"} | _both(at, *_STUCK)
+                    yield head | {"part": f"stuck at the {label}, of column before [%]"} | _compared(at, *_STUCK)
             if "share" not in update.expected_stuck.dims:
-                yield head | {"part": "stuck at the restoring force [%]"} | _both(of_shape, *_STUCK)
+                yield head | {"part": "stuck at the restoring force [%]"} | _compared(of_shape, *_STUCK)
 
 
 def _input_rows(device, update):
@@ -275,7 +277,7 @@ def _input_rows(device, update):
         yield head | {"before": 0.0, "before_std": 1.0} | after
 
 
-def _both(update, before, after, scale):
+def _compared(update, before, after, scale):
     """Numbers before and after the measurement, the latter only if they are to be relied on."""
     updated = float(update[after]) if is_reliable(update) else np.nan
     return {"before": scale * float(update[before]), "after": scale * updated}
@@ -339,9 +341,9 @@ def _moved_inputs(update):
     ):
         if abs(score) > LARGE:
             yield Limit("moved_input", Side.EITHER, True, numbers={"name": str(name), "score": float(score)})
-    for datum, rest in zip(update.datum.values, update.datum_rest.values, strict=True):
-        if abs(rest) > LARGE * update.attrs["rest"]:
-            numbers = {"datum": str(datum), "rest": float(rest)}
+    for datum, residual in zip(update.datum.values, update.datum_rest.values, strict=True):
+        if abs(residual) > LARGE * update.attrs["rest"]:
+            numbers = {"datum": str(datum), "rest": float(residual)}
             yield Limit("left_to_the_model", Side.EITHER, True, numbers=numbers)
 
 

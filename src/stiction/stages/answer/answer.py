@@ -66,7 +66,7 @@ def _of_pull_off(data, settings):
     numbers = settings.measured, settings.measured_error
     left_out = (
         ("inputs",)
-        if isinstance(unknowns, OfBudgets) and any(unknowns.of((rh, FORCE)) is None for rh in forces_by_air)
+        if isinstance(unknowns, OfBudgets) and any(unknowns.budget((rh, FORCE)) is None for rh in forces_by_air)
         else ()
     )
     question = places.ProbeQuestion(
@@ -151,7 +151,7 @@ def _left_out(data, circumstances, unknowns, shock):
     at = {(condition.humidity, condition.shape) for condition in circumstances} & set(getattr(unknowns, "budgets", ()))
     left_out = ["voltage"] if float(data["life"].potential) > 0 and Cause.VOLTAGE not in inside else []
     left_out += ["shock"] if shock and data.get("fast_strips") and Cause.FAST not in inside else []
-    return left_out + (["inputs"] if any(unknowns.of(key) is None for key in at) else [])
+    return left_out + (["inputs"] if any(unknowns.budget(key) is None for key in at) else [])
 
 
 def _forbidden(data, unknowns):

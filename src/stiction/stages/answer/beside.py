@@ -40,7 +40,7 @@ def of_forces(stopper: xr.Dataset, share: float) -> dict[float, float]:
 
 
 def between(answer: Answer, limits: Mapping[float, float]) -> Between | None:
-    """Strictest size to build between the humid airs of an answer, none if it reads as the size to build.
+    """Strictest size to build between the humid airs of an answer, none within rounding of the size to build.
 
     Parameters
     ----------
@@ -65,9 +65,7 @@ def between(answer: Answer, limits: Mapping[float, float]) -> Between | None:
     sizes = {rh: limits[rh] * float(np.exp(np.interp(rh, list(factors), list(factors.values())))) for rh in inside}
     sign = answer.sought.sign
     worst = min(sizes, key=lambda humidity: sign * sizes[humidity], default=None)
-    if worst is None or not sign * sizes[worst] < sign * answer.build:
-        return None
-    if answer.in_words(sizes[worst]) == answer.in_words(answer.build):
+    if worst is None or not _is_beyond(sizes[worst], answer.build, answer.sought):
         return None
     return Between(worst, sizes[worst], sign * min(sign * limits[rh] * _strictest(factors, rh, sign) for rh in inside))
 

@@ -102,10 +102,11 @@ class AskedBeam(AskedSolids):
 
     def question(self, air: float) -> Question | Bridge:
         """Question about one air [-]."""
-        of = "", tuple(side.heights for side in self.sides), ({}, {}), (air,), self.thickness, self.gap, self.width
+        surfaces = tuple(side.heights for side in self.sides)
+        stated = "", surfaces, ({}, {}), (air,), self.thickness, self.gap, self.width
         if self.residual_stress is None:
-            return Question(*of, **self.solids)
-        return Bridge(*of, self.residual_stress, **self.solids)
+            return Question(*stated, **self.solids)
+        return Bridge(*stated, self.residual_stress, **self.solids)
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from stiction.stages.axes import points
 from stiction.stages.axes.law import in_order, law_inputs, on_law, slope_of
 from stiction.stages.axes.points import DeviceAtPoint, Surfaces
 from stiction.stages.axes.requirement import flagged, margins_of
-from stiction.stages.surfaces.rough_surfaces import both
+from stiction.stages.surfaces.rough_surfaces import sides_of
 
 #: Fewest intervals between values of the variable of a second process.
 SECOND = 4
@@ -126,7 +126,7 @@ STAGES = (
         settings=_settings,
         kind=Settings,
         complete=lambda settings, data: replace(settings, device=settings.device.corrected(data)),
-        compute=lambda data, settings: compute(both(data), data["laws"], settings),
+        compute=lambda data, settings: compute(sides_of(data), data["laws"], settings),
         message="Device {device} at value {number} of its process.",
         running=Running(minutes=120),
     ),

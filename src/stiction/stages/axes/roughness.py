@@ -24,7 +24,7 @@ from stiction.stages.axes import points
 from stiction.stages.axes.points import DeviceAtPoint, Surfaces, joined
 from stiction.stages.axes.requirement import flagged, margins_of, relative_errors
 from stiction.stages.contact.pairs import require_feasible
-from stiction.stages.surfaces.rough_surfaces import both
+from stiction.stages.surfaces.rough_surfaces import sides_of
 from stiction.surface.replica import Coherence
 
 #: Points of a curve, the last of which has the surface as it is given.
@@ -208,7 +208,7 @@ STAGES = (
         settings=_settings,
         kind=Settings,
         complete=lambda settings, data: replace(settings, device=settings.device.corrected(data)),
-        compute=lambda data, settings: compute(both(data), settings),
+        compute=lambda data, settings: compute(sides_of(data), settings),
         message="Device {device} at roughness {number}.",
         running=Running(minutes=120),
     ),

@@ -54,7 +54,9 @@ def by_pair(cases: Mapping[tuple[str, float, str], xr.Dataset]) -> dict[tuple[st
     cases_of = {}
     for (pair, _, variant), dataset in sorted(cases.items(), key=lambda item: item[0][1]):
         cases_of.setdefault((pair, variant), []).append(dataset)
-    return {key: xr.concat(cases_of[key], "humidity") for key in dict.fromkeys((pair, name) for pair, _, name in cases)}
+    along_humidity = {"data_vars": "all", "coords": "different", "compat": "equals", "join": "exact"}
+    keys = dict.fromkeys((pair, variant) for pair, _, variant in cases)
+    return {key: xr.concat(cases_of[key], "humidity", **along_humidity) for key in keys}
 
 
 def cases_of(dataset: xr.Dataset) -> Iterator[tuple[float, Variant]]:

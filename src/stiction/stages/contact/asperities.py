@@ -59,7 +59,7 @@ def compute(grids: Sequence[EquivalentSurface], pair: str, seed: int, settings: 
             "readings of asperities are compared without attraction across gaps: attraction.reach: touching"
         )
     streams, films = streams_of_sides(seed, pair), [settings.water.film(each) for each in settings.humidities]
-    media = [_Medium.of(settings.solids, name) for name in settings.attractions]
+    media = [_Medium.from_settings(settings.solids, name) for name in settings.attractions]
     energies = np.full((len(grids), len(READINGS), settings.strips, len(media), len(films)), np.nan)
     seconds = np.full(energies.shape[:-1], np.nan)
     for i, surface in enumerate(grids):
@@ -82,7 +82,7 @@ class _Medium(NamedTuple):
     attraction: DugdaleAttraction | None
 
     @classmethod
-    def of(cls, settings, name):
+    def from_settings(cls, settings, name):
         """Both solids of the settings with a medium between them."""
         upper, lower = bodies(settings)
         pair = (between(upper, lower, name) for between in (solids.asperity_between, solids.attraction_between))
@@ -95,7 +95,7 @@ def _pressure(strip, surface, reading, medium):
         spheres = replace(surface, definition=Definition(reading)).asperities(strip.heights)
         return pressure_of_spheres(medium.sphere, spheres, strip.grid)
     space = HalfSpace(strip.heights.shape, surface.spacing, medium.modulus)
-    attraction = Adhesion.of((0.0, 0.0), medium.attraction, space)
+    attraction = Adhesion.from_film((0.0, 0.0), medium.attraction, space)
     return solid_pressure(strip, alone(strip.heights, space), attraction)
 
 

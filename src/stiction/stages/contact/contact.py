@@ -17,7 +17,7 @@ from stiction.rounding import is_at_most
 from stiction.stages.contact.pairs import Settings, require_feasible, streams_of_sides, surface_pairs
 from stiction.stages.surfaces.heights import moments
 from stiction.stages.surfaces.parameters import spectrum_of
-from stiction.stages.surfaces.rough_surfaces import both
+from stiction.stages.surfaces.rough_surfaces import sides_of
 from stiction.surface.neighbours import mean_height_correlations
 from stiction.surface.spectrum import uncorrelated_beyond
 
@@ -72,8 +72,8 @@ def _displaced(contact, pair, streams):
 
 def from_surfaces(data: Mapping[str, Any], pair: str, settings: Settings) -> xr.Dataset:
     """Compute from the datasets of both surfaces by stage, of which one can follow the other as stated."""
-    require_feasible(both(data), "NG", settings)
-    return compute(both(data), pair, "NG", settings)
+    require_feasible(sides_of(data), "NG", settings)
+    return compute(sides_of(data), pair, "NG", settings)
 
 
 def layout(solid_pressure: np.ndarray, bearing_area: np.ndarray, grid: DistanceGrid, samples: range) -> xr.Dataset:
@@ -111,9 +111,9 @@ def chunk(samples: int, number: int, chunks: int) -> range:
 
 def drawn_chunk(data: Mapping[str, Any], at: Any, settings: Settings) -> xr.Dataset:
     """Compute the samples of one chunk from the datasets of both surfaces by stage and the wildcards of a job."""
-    require_feasible(both(data), at.model, settings)
+    require_feasible(sides_of(data), at.model, settings)
     samples = chunk(settings.contact.samples, int(at.chunk), int(at.number))
-    return compute(both(data), at.pair, at.model, settings, samples)
+    return compute(sides_of(data), at.pair, at.model, settings, samples)
 
 
 def join_chunks(chunks: Iterable[xr.Dataset], settings: Settings) -> xr.Dataset:

@@ -29,7 +29,7 @@ from stiction.progress import progress
 from stiction.stages.contact import contact, pairs
 from stiction.stages.contact.curves import force_curves
 from stiction.stages.contact.pairs import bodies, streams_of_sides, surface_pair
-from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
+from stiction.stages.surfaces.rough_surfaces import sides_of, surface_inputs
 
 #: Relative standard errors, by the strips, of the ratios of the means, and of the values that one in 1000 exceeds, at
 #: which no more strips are drawn.
@@ -152,12 +152,12 @@ def elements_of(pair: EquivalentSurface, materials: tuple[Solid, Solid]) -> Half
 
 
 def require_fine_elements(settings: Settings) -> None:
-    """Raise the error of `stiction.contact.full.elements.Adhesion.of` unless elements resolve the attraction."""
+    """Raise the error of `stiction.contact.full.elements.Adhesion.from_film` unless elements resolve the attraction."""
     materials = bodies(settings)
     spacing = settings.sampling.spacing * settings.contact.every
     space = HalfSpace((1, 1), spacing, solids.composite_modulus(*materials))
     for each in {medium(settings, humidity) for humidity in settings.humidities}:
-        elements.Adhesion.of((0.0, 0.0), solids.attraction_between(*materials, each), space)
+        elements.Adhesion.from_film((0.0, 0.0), solids.attraction_between(*materials, each), space)
 
 
 def medium(settings: Settings, humidity: float) -> str:
@@ -181,7 +181,7 @@ def _on_summits(surfaces, pair, settings):
 
 def _in_air(summits, humidity, water, attraction, space) -> Callable[[int], StripInAir]:
     """What acts on each strip at a humidity, by its number. ``summits`` is the dataset of their contact."""
-    adhesion = elements.Adhesion.of(water.film(humidity), attraction, space, water.gaps)
+    adhesion = elements.Adhesion.from_film(water.film(humidity), attraction, space, water.gaps)
     curves = force_curves(summits, humidity, water)
     beyond = np.zeros(curves.samples) if curves.beyond is None else curves.beyond
     return lambda k: StripInAir(adhesion, (curves.distance, curves.curve(k)), float(beyond[k]))
@@ -298,7 +298,7 @@ def _stage(name, folder, settings, forces):
         inputs=lambda plan, at: surface_inputs(plan, at.pair),
         settings=settings,
         kind=Settings,
-        compute=lambda data, at, settings: compute(both(data), at.pair, settings),
+        compute=lambda data, at, settings: compute(sides_of(data), at.pair, settings),
         message=f"Full elastic contact of pair {{pair}}{forces}, beside the sum over summits.",
         running=Running(minutes=120, priority=1),
     )

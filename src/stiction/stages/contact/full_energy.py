@@ -30,7 +30,7 @@ from stiction.plan.stage import At, Running, Stage, select
 from stiction.stages.contact import contact, full_contact
 from stiction.stages.contact.curves import force_curves
 from stiction.stages.contact.pairs import bodies, streams_of_sides, surface_pair
-from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
+from stiction.stages.surfaces.rough_surfaces import sides_of, surface_inputs
 from stiction.streams import stream
 
 #: Largest relative error of the ratio of energies with which predictions are corrected: 1 % of a length.
@@ -171,14 +171,14 @@ def strips_of(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, sett
     medium = full_contact.medium(settings, humidity)
     rough_pair, water = surface_pair(surfaces, "NG", settings), settings.water.at(humidity)
     adhesion = partial(
-        Adhesion.of, water.film(humidity), solids.attraction_between(*materials, medium), across=water.gaps
+        Adhesion.from_film, water.film(humidity), solids.attraction_between(*materials, medium), across=water.gaps
     )
     effort, grids = Effort(EFFORT), {}
-    fine = CountedHalfSpace.of(full_contact.elements_of(rough_pair, materials), effort)
-    grids[FINE] = Level.of(FINE, fine, adhesion)
+    fine = CountedHalfSpace.from_space(full_contact.elements_of(rough_pair, materials), effort)
+    grids[FINE] = Level.from_fine(FINE, fine, adhesion)
     for every in GRIDS:
         try:
-            grids[every] = Level.of(every, fine, adhesion)
+            grids[every] = Level.from_fine(every, fine, adhesion)
         except ValueError:  # no control
             continue
     return Strips(rough_pair, streams_of_sides(settings.seed, pair), grids, water, humidity, effort, settings.forces)
@@ -256,7 +256,7 @@ STAGES = (
         inputs=lambda plan, at: surface_inputs(plan, at.case.pair),
         settings=settings_of,
         kind=Settings,
-        compute=lambda data, at, settings: compute(both(data), at.case, settings),
+        compute=lambda data, at, settings: compute(sides_of(data), at.case, settings),
         message="Energies of {case} in full elastic contact.",
         running=Running(minutes=120, priority=1),
     ),

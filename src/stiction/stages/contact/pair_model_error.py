@@ -1,7 +1,6 @@
 """Error of the model of the contact at all humidities of a pair: ratios of full contact to the sum over summits."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -30,35 +29,37 @@ from stiction.stages.contact.corrections import study_of
 POWER_ERROR = 0.1
 
 
-@dataclass(frozen=True)
-class Settings:
-    """Humidities for the error of the model, 0 for dry air, and those at which it is applied."""
-
-    humidities: tuple[float, ...]  #: [-]
-    applied: tuple[float, ...] = ()  #: those at which the predictions are corrected by it [-]
-    condenses: bool = True  #: whether water condenses between the surfaces; otherwise all air is dry
-
-
-def compute(study: xr.Dataset, settings: Settings, tips: xr.Dataset | None = None) -> xr.Dataset:
+def compute(
+    study: xr.Dataset,
+    humidities: Sequence[float],
+    applied: Sequence[float] = (),
+    condenses: bool = True,
+    tips: xr.Dataset | None = None,
+) -> xr.Dataset:
     """Ratios and powers of energies and of largest attractions, and the factor of crack lengths, with their errors.
 
-    Those of tips are among them, if any are on the pair.
+    Those of tips are among them, if any are on the pair. Predictions are corrected by them at the humidities of
+    ``applied`` [-]. Unless water ``condenses`` between the surfaces, all air is dry.
     """
     computed_at, *energies = full_contact.energies(study)
     _, *pull_offs = full_contact.pull_offs(study)
     of_energy, of_pull_off = np.moveaxis(full_contact.moved_models(study), -1, 0)
-    at = np.sort(settings.humidities)
-    airs = at * settings.condenses
-    humidities = computed_at, airs
+    at = np.sort(humidities)
+    airs = at * condenses
+    airs_of_study_and_pair = computed_at, airs
     ratios = {
-        "energy_ratio": mean_ratios(*of_energy, *humidities),
-        "pull_off_ratio": mean_ratios(*of_pull_off, *humidities),
-        "energy_power": scatter_ratios(*energies, *humidities),
-        "pull_off_power": scatter_ratios(*pull_offs, *humidities),
-        "length_factor": length_factors(*of_energy, *humidities),
+        "energy_ratio": mean_ratios(*of_energy, *airs_of_study_and_pair),
+        "pull_off_ratio": mean_ratios(*of_pull_off, *airs_of_study_and_pair),
+        "energy_power": scatter_ratios(*energies, *airs_of_study_and_pair),
+        "pull_off_power": scatter_ratios(*pull_offs, *airs_of_study_and_pair),
+        "length_factor": length_factors(*of_energy, *airs_of_study_and_pair),
     }
-    changes = layout(ratios, at, at[np.isin(airs, computed_at)], study.sizes["strip"], settings.applied)
-    return changes if tips is None else changes.assign(_of_tips(tips, humidities)).assign_coords(slope=tips.slope)
+    changes = layout(ratios, at, at[np.isin(airs, computed_at)], study.sizes["strip"], applied)
+    return (
+        changes
+        if tips is None
+        else changes.assign(_of_tips(tips, airs_of_study_and_pair)).assign_coords(slope=tips.slope)
+    )
 
 
 def of_devices(
@@ -80,7 +81,7 @@ def of_devices(
     if study is None:
         return humid
     study, tips = (each if each is None else each.sel(humidity=[0.0]) for each in (study, tips))
-    dry = compute(study, Settings((0.0,), (0.0,)), tips).drop_vars("strips")
+    dry = compute(study, (0.0,), (0.0,), tips=tips).drop_vars("strips")
     dry = dry.assign({f"{quantity}_applied": dry.applied for quantity in ("pull_off", "tip")})
     joined = xr.concat([dry, humid], "humidity", data_vars="all", coords="minimal", compat="override", join="outer")
     joined = joined.fillna({name: same for name, same in _NO_TIPS.items() if name in joined})
@@ -232,7 +233,6 @@ def _stage(name, between, forces):
         f"studies/model_error/{between}{{pair}}",
         inputs=lambda plan, at: _inputs(plan, at.pair, between),
         settings=_settings,
-        kind=Settings,
         compute=compute,
         message=f"Error of the model of the contact of pair {{pair}}{forces}.",
         running=Running(priority=1),

@@ -15,7 +15,7 @@ from stiction.plan.stage import Running, Stage, select
 from stiction.progress import progress
 from stiction.stages.contact import pairs
 from stiction.stages.contact.pairs import bodies, streams_of_sides, surface_pair
-from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
+from stiction.stages.surfaces.rough_surfaces import sides_of, surface_inputs
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -89,7 +89,7 @@ STAGES = (
         inputs=lambda plan, at: surface_inputs(plan, at.pair),
         settings=_settings,
         kind=Settings,
-        compute=lambda data, at, settings: compute(both(data), at.pair, settings),
+        compute=lambda data, at, settings: compute(sides_of(data), at.pair, settings),
         message="Stress of the touching summits of pair {pair} (App. A).",
         running=Running(minutes=10),
     ),

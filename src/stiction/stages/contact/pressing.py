@@ -13,7 +13,7 @@ from stiction.contact.full.halfspace import HalfSpace
 from stiction.plan.stage import Running, Stage
 from stiction.stages.contact import full_contact
 from stiction.stages.contact.pairs import bodies
-from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
+from stiction.stages.surfaces.rough_surfaces import sides_of, surface_inputs
 
 #: Variables of a strip that is pressed.
 _PRESSED = ("pressure", "separation", "contact_share", "hardness_share", "flattening")
@@ -126,7 +126,7 @@ STAGES = (
         inputs=lambda plan, at: surface_inputs(plan, at.pair),
         settings=_settings,
         kind=Settings,
-        compute=lambda data, at, settings: compute(both(data), at.pair, settings),
+        compute=lambda data, at, settings: compute(sides_of(data), at.pair, settings),
         message="Pair {pair} after its surfaces were pressed together.",
         running=Running(minutes=60),
     ),

@@ -14,7 +14,7 @@ from stiction.errors import NotConverged
 from stiction.plan.stage import At, Running, Stage, select
 from stiction.stages.contact import full_contact, pair_model_error
 from stiction.stages.contact.changes.patches import GROUND
-from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
+from stiction.stages.surfaces.rough_surfaces import sides_of, surface_inputs
 
 #: Places in full contact, as many as they may become until their error counts little, and those on summits alone.
 PLACES = {"strips": 8, "most": 24, "on_summits": 200}
@@ -43,7 +43,7 @@ def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], settings: Setting
 def changes(study: xr.Dataset) -> xr.Dataset:
     """Changes of the forces of a probe by full contact, as a dataset of stage model_error_of_devices."""
     humidities = tuple(study.humidity.values.tolist())
-    errors = pair_model_error.compute(study, pair_model_error.Settings(humidities, humidities)).drop_vars("strips")
+    errors = pair_model_error.compute(study, humidities, humidities).drop_vars("strips")
     is_known = np.isfinite(errors.pull_off_ratio)
     flags = dict.fromkeys(("applied", "pull_off_applied"), is_known) | {"tip_applied": is_known & False}
     return errors.assign(flags | {"nearest": ((), True)} | _largest_residuals(study, errors))
@@ -70,7 +70,7 @@ STAGES = (
         inputs=lambda plan, at: surface_inputs(plan, plan.config["devices"][at.device]["pair"]),
         settings=settings_of,
         kind=Settings,
-        compute=lambda data, settings: compute(both(data), settings),
+        compute=lambda data, settings: compute(sides_of(data), settings),
         label="full_contact",
         message="Full elastic contact of probe {device}, beside the sum over summits.",
         running=Running(minutes=120, priority=1),

@@ -28,7 +28,7 @@ from stiction.progress import progress
 from stiction.stages.contact import contact, curves, full_contact
 from stiction.stages.contact.full_contact import Settings, StripInAir
 from stiction.stages.contact.pairs import bodies, streams_of_sides, surface_pair
-from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
+from stiction.stages.surfaces.rough_surfaces import sides_of, surface_inputs
 
 #: Relative standard error, by the strips, of the force that one tip in 1000 exceeds, at which no more are drawn.
 ACCURACY = 0.15
@@ -96,7 +96,7 @@ def _at_slope(surfaces, settings, slope):
         pair = surface_pair(surfaces, "NG", at_slope)
         space = full_contact.elements_of(pair, materials)
         attraction = solids.attraction_between(*materials, medium)
-        adhesion = elements.Adhesion.of(water.film(humidity), attraction, space, water.gaps)
+        adhesion = elements.Adhesion.from_film(water.film(humidity), attraction, space, water.gaps)
         tips.append(TipsAtSlope(pair, space, adhesion, water, humidity))
     return tips
 
@@ -191,7 +191,7 @@ def _stage(name, between, of_strips, forces):
         inputs=lambda plan, at: surface_inputs(plan, at.pair),
         settings=settings,
         kind=Settings,
-        compute=lambda data, at, settings: compute(both(data), at.pair, settings),
+        compute=lambda data, at, settings: compute(sides_of(data), at.pair, settings),
         message=f"Full elastic contact of the tips of beams of pair {{pair}}{forces}, beside the sum over summits.",
         running=Running(minutes=120, priority=1),
     )
@@ -207,7 +207,7 @@ STAGES = (
         inputs=lambda plan, at: surface_inputs(plan, at.case.pair),
         settings=settings_of_devices,
         kind=Settings,
-        compute=lambda data, at, settings: compute_for_devices(both(data), at.case.pair, settings),
+        compute=lambda data, at, settings: compute_for_devices(sides_of(data), at.case.pair, settings),
         message="Full elastic contact of the tips of devices of {case}, beside the sum over summits.",
         running=Running(minutes=120, priority=1),
     ),

@@ -21,7 +21,7 @@ from stiction.stages.devices.contact_names import case_on, contact_of, correctio
 from stiction.stages.devices.opening import settings_of_beam
 from stiction.stages.devices.sticking import BeamSettings, Ground, Laws, fitted_laws, ground_of_laws
 from stiction.stages.laws.stored_model import chaos_model, model_variables
-from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
+from stiction.stages.surfaces.rough_surfaces import sides_of, surface_inputs
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Settings:
 def compute(data: Mapping[str, Any], settings: Settings) -> xr.Dataset:
     """Fit the force laws of a contact, from its dataset and those of both surfaces by stage."""
     contact, sides = data["contact"], (settings.strip, settings.width)
-    laws = fitted_laws(with_correlations(contact, both(data), sides), settings.humidity, settings, sides)
+    laws = fitted_laws(with_correlations(contact, sides_of(data), sides), settings.humidity, settings, sides)
     share = curves.share_flat(contact, settings.humidity, settings.water)
     return layout(laws, surface_rms(contact), share)
 

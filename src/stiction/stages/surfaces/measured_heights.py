@@ -1,10 +1,8 @@
 """Heights of a measured surface (Sec. II-A): the dataset of stage heights from stage estimate."""
 
-from dataclasses import dataclass
-
 import xarray as xr
 
-from stiction.plan.stage import Stage, select
+from stiction.plan.stage import Stage
 from stiction.scans.moments import moments_of
 from stiction.stages.surfaces import estimate as stage_estimate
 from stiction.stages.surfaces import heights as stage_heights
@@ -12,16 +10,10 @@ from stiction.surface.feasible import Moments
 from stiction.surface.translation import Translation
 
 
-@dataclass(frozen=True)
-class Settings:
-    """Source of the height density."""
-
-    surface: str  #: its name, for messages
-    heights: str  #: ``moments`` (maximum entropy) or ``measured``
-
-
-def compute(estimate: xr.Dataset, settings: Settings) -> xr.Dataset:
+def compute(estimate: xr.Dataset, surface: str, heights: str) -> xr.Dataset:
     """Density of the measured moments, of the nearest feasible ones, or of the measured quantiles.
+
+    The heights are ``moments`` (maximum entropy) or ``measured``; messages name the surface.
 
     Raises
     ------
@@ -29,10 +21,10 @@ def compute(estimate: xr.Dataset, settings: Settings) -> xr.Dataset:
         If the density of the moments is asked for, and neither these nor any near them have one.
     """
     try:
-        density = stage_estimate.density(estimate, settings.heights)
+        density = stage_estimate.density(estimate, heights)
     except ValueError as reason:
-        raise ValueError(f"surfaces.{settings.surface}.heights is {settings.heights}, but {reason}") from None
-    if settings.heights == "moments":
+        raise ValueError(f"surfaces.{surface}.heights is {heights}, but {reason}") from None
+    if heights == "moments":
         shape, distance = stage_estimate.feasible(estimate), stage_estimate.distance(estimate)
     else:
         shape, distance = map(float, moments_of(Translation(density))[1:]), 0.0
@@ -46,8 +38,10 @@ STAGES = (
         "heights/{surface}",
         surfaces=lambda plan: plan.scans.surfaces,
         inputs=lambda plan, at: {"estimate": f"estimate/{at.surface}"},
-        settings=lambda plan, at: select(Settings, plan.config["surfaces"][at.surface], surface=at.surface),
-        kind=Settings,
+        settings=lambda plan, at: {
+            "surface": at.surface,
+            "heights": plan.config["surfaces"][at.surface]["heights"],
+        },
         compute=compute,
         label="heights",
         message="Height density of measured surface {surface} (Sec. II-A).",

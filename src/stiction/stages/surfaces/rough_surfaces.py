@@ -38,11 +38,11 @@ def rough_surface(heights: xr.Dataset, spectrum: xr.Dataset, model: str, grid: S
 
 
 def surface_inputs(plan: Any, pair: str) -> dict[str, list[str]]:
-    """Names of the datasets of both surfaces of a pair, by stage, for `both`."""
+    """Names of the datasets of both surfaces of a pair, by stage, for `sides_of`."""
     return {stage: [f"{stage}/{name}" for name in plan.sides(pair)] for stage in ("heights", "spectrum")}
 
 
-def both(data: Mapping[str, Sequence[xr.Dataset]]) -> list[tuple[xr.Dataset, xr.Dataset]]:
+def sides_of(data: Mapping[str, Sequence[xr.Dataset]]) -> list[tuple[xr.Dataset, xr.Dataset]]:
     """Datasets (heights, spectrum) of beam and substrate. A surface on both sides is one tuple."""
     pairs = {
         id(heights): (heights, spectrum) for heights, spectrum in zip(data["heights"], data["spectrum"], strict=True)

@@ -443,7 +443,7 @@ def length_dataset(
     measured = [_measured_length(beam, settings.crack_lengths) for beam in beams]
     lengths = {"computed": [float(beam.budget.centre) for beam in beams]}
     lengths |= {key: [data[key] for data in measured] for key in ("measured", "beam_length")}
-    numbers = {"measured_error": [data["error"] for data in measured]} | _both(
+    numbers = {"measured_error": [data["error"] for data in measured]} | _moments(
         prior, posterior, responses[: len(beams)]
     )
     lengths |= {size: [getattr(beam.beam, size) for beam in beams] for size in BEAM_SIZES}
@@ -483,7 +483,7 @@ def force_dataset(
     if not probes:
         return xr.Dataset()
     measured, computed_forces, errors = np.transpose(pull_offs)
-    numbers = {"error": errors} | _both(prior, posterior, responses)
+    numbers = {"error": errors} | _moments(prior, posterior, responses)
     return xr.Dataset(
         {f"force_{name}": ("force", value) for name, value in numbers.items()}
         | {
@@ -533,7 +533,7 @@ def agreement_dataset(prior: KnownInputs, lengths: CrackData, counts: Counts, nu
     return xr.Dataset({name: ((), value) for name, value in p_values.items()})
 
 
-def _both(prior, posterior, responses):
+def _moments(prior, posterior, responses):
     """Standard deviations before, shifts and standard deviations after the measurement, of ln l."""
     shift, after = posterior.response_moments(responses)
     return {"before": prior.response_moments(responses)[1], "shift": shift, "after": after}
@@ -555,7 +555,7 @@ def result_dataset(
 
     The first ``number`` responses are to inputs.
     """
-    numbers = {"of_inputs": first_inputs(prior, number).response_moments(responses[:, :number])[1]} | _both(
+    numbers = {"of_inputs": first_inputs(prior, number).response_moments(responses[:, :number])[1]} | _moments(
         prior, posterior, responses
     )
     numbers |= {"reduced": [result.reduced for result in of_device]}

@@ -16,7 +16,7 @@ from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact import pairs
 from stiction.stages.contact.changes.patches import TIPS, PatchChange, PatchKind
 from stiction.stages.surfaces.descriptions import description, drawn_as
-from stiction.stages.surfaces.rough_surfaces import both
+from stiction.stages.surfaces.rough_surfaces import sides_of
 
 #: Tips on members, as a multiple of those for slopes: they show the lengths that few tips hold. README's lever needs
 #: 300: its sizes to build by 100, 180, 240 and 300 are 159.8, 157.4, 161.3 and 162.9 µm.
@@ -62,7 +62,7 @@ def compute(
 
 def from_surfaces(data: Mapping[str, Any], pair: str, surface: str, settings: Settings) -> xr.Dataset:
     """Compute from the datasets of both surfaces by stage."""
-    return compute(both(data), pair, surface, settings)
+    return compute(sides_of(data), pair, surface, settings)
 
 
 #: Keys of settings by the words of assumed quantities.

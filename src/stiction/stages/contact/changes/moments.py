@@ -16,7 +16,7 @@ from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact import pairs
 from stiction.stages.contact.changes.patches import PatchChange
 from stiction.stages.surfaces.descriptions import description, drawn_as
-from stiction.stages.surfaces.rough_surfaces import both
+from stiction.stages.surfaces.rough_surfaces import sides_of
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,7 +40,7 @@ def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settin
 
 def from_surfaces(data: Mapping[str, Any], pair: str, settings: Settings) -> list[xr.Dataset]:
     """Compute from the datasets of both surfaces by stage."""
-    return compute(both(data), pair, settings)
+    return compute(sides_of(data), pair, settings)
 
 
 def moment(dataset: xr.Dataset) -> float:

@@ -17,7 +17,7 @@ from stiction.stages.contact import pairs
 from stiction.stages.contact.changes.patches import PatchChange
 from stiction.stages.surfaces import measured_heights
 from stiction.stages.surfaces.descriptions import description, drawn_as
-from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
+from stiction.stages.surfaces.rough_surfaces import sides_of, surface_inputs
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ def compute(
     """
     heights, spectrum = surfaces[settings.surfaces.index(surface)]
     if estimate is not None:
-        heights = measured_heights.compute(estimate, measured_heights.Settings(surface, "measured"))
+        heights = measured_heights.compute(estimate, surface, "measured")
     shifted, difference = bracketed(description(heights, spectrum), quantity, settings.deviation)
     changed = [drawn_as(surface, settings.sampling.spacing) for surface in shifted]
     alternatives = [
@@ -58,7 +58,7 @@ def from_surfaces(
     data: Mapping[str, Any], pair: str, surface: str, quantity: str, settings: Settings
 ) -> list[xr.Dataset]:
     """Compute from the datasets of both surfaces by stage, and from the estimate if there is one."""
-    return compute(both(data), pair, surface, quantity, settings, data.get("estimate"))
+    return compute(sides_of(data), pair, surface, quantity, settings, data.get("estimate"))
 
 
 def difference(contact: xr.Dataset) -> float:

@@ -14,7 +14,7 @@ from stiction.stages.contact import pairs
 from stiction.stages.contact.changes.patches import PatchChange
 from stiction.stages.surfaces import estimate as stage_estimate
 from stiction.stages.surfaces import measured_heights, measured_spectrum
-from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
+from stiction.stages.surfaces.rough_surfaces import sides_of, surface_inputs
 from stiction.stages.surfaces.spectrum import SpectrumUse
 
 
@@ -55,7 +55,7 @@ def compute(
 
 def from_surfaces(data: Mapping[str, Any], pair: str, choice: str, settings: Settings) -> xr.Dataset:
     """Compute from the datasets of both surfaces by stage and the estimates of the measured ones."""
-    return compute(both(data), data["estimates"], pair, choice, settings)
+    return compute(sides_of(data), data["estimates"], pair, choice, settings)
 
 
 def _otherwise(name, estimate, choice, settings):
@@ -65,7 +65,7 @@ def _otherwise(name, estimate, choice, settings):
         source = replace(source, heights="measured")  # the only one that exists
     if not stage_estimate.is_resolved(estimate):
         source = replace(source, beyond="cut")  # as is no power law that could go on
-    heights = measured_heights.compute(estimate, measured_heights.Settings(name, source.heights))
+    heights = measured_heights.compute(estimate, name, source.heights)
     sampling = settings.sampling
     use = SpectrumUse(name, sampling.strip_length, sampling.margin)
     spectrum = measured_spectrum.Settings(source.psd, source.beyond, sampling.spacing, use)

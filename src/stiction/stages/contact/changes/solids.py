@@ -11,7 +11,7 @@ from stiction.contact.materials import OF_CONTACT, OF_REPLICAS, InputStep
 from stiction.models import SHIFTS, SIDES
 from stiction.stages.contact import contact
 from stiction.stages.contact.changes.patches import PatchChange
-from stiction.stages.surfaces.rough_surfaces import both
+from stiction.stages.surfaces.rough_surfaces import sides_of
 
 
 def less_or_more(settings: dict[str, Any], name: str, shift: str, step: InputStep) -> dict[str, Any]:
@@ -44,7 +44,7 @@ def _with_other(material, name, change):
 
 def _changed(data, at, settings):
     """Contact under a change. ASSUME: surfaces have as much of a slightly larger coherence as is feasible."""
-    return contact.compute(both(data), at.pair, "NG", settings)
+    return contact.compute(sides_of(data), at.pair, "NG", settings)
 
 
 #: A property of the material of the beam, or of surfaces that follow each other.
