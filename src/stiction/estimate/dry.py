@@ -172,6 +172,10 @@ def processes(part: Mapping[str, Any], *names: str) -> tuple[Surrogate, ...]:
     return tuple(Surrogate(**part[name]) for name in names)
 
 
+#: Keys of a material that the estimate knows.
+_OF_MATERIALS = ("hamaker_constant_zJ", "density_kg_per_m3")
+
+
 def constant_of(surfaces: Sequence[Mapping[str, Any]], materials: Mapping[str, Any]) -> float:
     """Hamaker constant of the solids of two surfaces in dry air, `stiction.contact.vanderwaals.combined` [J].
 
@@ -188,7 +192,7 @@ def _of_material(surface, materials):
     if "material" not in surface:
         return POLYSILICON
     stated = materials.get(surface["material"])
-    if stated is None or (others := [key for key in stated if key != "hamaker_constant_zJ"]):
+    if stated is None or (others := [key for key in stated if key not in _OF_MATERIALS]):
         what = surface["material"] if stated is None else f"{others[0]} of {surface['material']}"
         raise NotLearnt(f"{what} was not learnt, of materials the Hamaker constant in dry air alone")
-    return to_si(stated["hamaker_constant_zJ"][DRY], "zJ")
+    return to_si(stated["hamaker_constant_zJ"][DRY], "zJ") if "hamaker_constant_zJ" in stated else POLYSILICON

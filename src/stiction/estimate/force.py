@@ -16,6 +16,7 @@ from typing import Any, ClassVar
 from stiction.config.units import to_si
 from stiction.estimate import dry
 from stiction.estimate.length import LengthRow, Lengths, NotLearnt, falling, known_at, most_after
+from stiction.estimate.life import StopperLife, Surroundings
 from stiction.estimate.state import OF_PATCHES, Film, PatchState
 from stiction.estimate.statistics import Heights
 from stiction.estimate.table import Surrogate
@@ -69,6 +70,7 @@ class Stopper:
     left_out: tuple[str, ...] = ()  #: keys that a run would read as well
     averaged: bool = False
     constant: float = dry.POLYSILICON  #: Hamaker constant of the solids in dry air [J]
+    surroundings: Surroundings = Surroundings()
     unit: ClassVar[str] = "uN"  #: of its size, a force
 
     @property
@@ -89,6 +91,10 @@ class Stopper:
     def closed(self, _modulus: float) -> Driven:
         """Closed form of its voltage, which it has not."""
         return Driven(0.0)
+
+    def life(self, _modulus: float) -> StopperLife:
+        """Its life."""
+        return StopperLife(self.surroundings)
 
     def errors(self, table: Mapping[str, Any]) -> Mapping[str, Any]:
         """Part of the table with the errors of its forces."""

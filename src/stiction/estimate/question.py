@@ -9,9 +9,11 @@ from stiction.config.kinds import KINDS
 from stiction.config.units import to_si
 from stiction.contact.air import DRY, DRY_AIR, is_humid, is_possible
 from stiction.estimate import dry
+from stiction.estimate.beams import SlenderBeam
 from stiction.estimate.bridge import Bridge
 from stiction.estimate.force import Stopper
 from stiction.estimate.length import Impossible, LengthRow, Lengths, NotLearnt, lengths, most_after
+from stiction.estimate.life import BeamLife, Surroundings
 from stiction.estimate.state import Film, TipState, stiffness_of
 from stiction.estimate.statistics import Heights, moments_of, slope_of
 from stiction.estimate.table import Surrogate
@@ -25,11 +27,11 @@ OF_SURFACES = ("rms_nm", "like", "hurst", "corner_rad_per_um", "cutoff_rad_per_u
 OF_SURFACES += ("unknown", "uncertainty", "psd", "published_psd", "mean_summit_radius_um", "summit_density_per_um2")
 OF_PAIRS = ("beam", "substrate", "gap_um", "humidities", "attraction", "coarser_mesh")
 OF_DEVICES = ("kind", "pair", "length_um", "thickness_um", "gap_um", "width_um", "humidities", "touchdowns")
-OF_DEVICES += OF_VOLTAGES
+OF_DEVICES += ("shock_g", *OF_VOLTAGES)
 OF_BRIDGES = ("kind", "pair", "length_um", "thickness_um", "gap_um", "width_um", "residual_stress_MPa")
-OF_BRIDGES += ("humidities", "touchdowns")
+OF_BRIDGES += ("humidities", "touchdowns", "shock_g")
 OF_STOPPERS = ("kind", "pair", "contact_um", "restoring_force_uN", "stiffness_N_per_m", "gap_um", "mass_ng")
-OF_STOPPERS += ("humidities", "touchdowns", "electrode")
+OF_STOPPERS += ("humidities", "touchdowns", "electrode", "shock_g")
 #: Keys that change the length to build alone: the estimate is of exact inputs, and leaves out what a run adds.
 LEFT_OUT = ("uncertainty", "requirement", "chart", "roughness")
 #: Sections of a file that change no length or force.
@@ -47,6 +49,7 @@ OF_DEFAULTS = {"attraction": {"reach": "all"}}
 #: Keys of numbers that must be positive.
 POSITIVE = ("rms_nm", "hurst", "corner_rad_per_um", "cutoff_rad_per_um", "kurtosis", "thickness_um", "gap_um")
 POSITIVE += ("width_um", "length_um", "contact_um", "restoring_force_uN", "thickness_nm", "permittivity", "touchdowns")
+POSITIVE += ("mass_ng", "stiffness_N_per_m", "area_um2", "surface_tension_mN_per_m", "density_kg_per_m3")
 #: Keys of which the second number must be above the first. A length in metres is not.
 _IN_ORDER = ("thickness_um", "length_um"), ("gap_um", "length_um"), ("corner_rad_per_um", "cutoff_rad_per_um")
 #: Numbers that a surface may leave open.
@@ -72,6 +75,7 @@ class Question:
     averaged: bool = False  #: whether the length is the mean over typical surfaces, not that on the stated one
     added: float = 0.0  #: energy that a voltage adds [J m⁻²]
     constant: float = dry.POLYSILICON  #: Hamaker constant of the solids in dry air [J]
+    surroundings: Surroundings = Surroundings()
     unit: ClassVar[str] = "um"  #: of its size, a length
 
     @property
@@ -96,6 +100,10 @@ class Question:
     def closed(self, modulus: float) -> Driven:
         """Closed form of its lengths at its voltage, from the modulus of the solids [Pa]."""
         return Driven(drive_of(self.added, self._stiffness(modulus), self.gap))
+
+    def life(self, modulus: float) -> BeamLife:
+        """Its life, from the modulus of the beam [Pa]."""
+        return BeamLife(SlenderBeam(1, self.thickness, self.gap, self.width, modulus), self.surroundings)
 
     def errors(self, table: Mapping[str, Any]) -> Mapping[str, Any]:
         """Part of the table with the errors of its lengths."""
@@ -190,17 +198,18 @@ def refuse_impossible(numbers: Mapping[str, Any], names: Mapping[str, str] | Non
         value = numbers[key]
         if not all(0 < each < math.inf for each in (value if isinstance(value, Sequence) else [value])):
             raise Impossible(f"{names[key]} must be above 0, got {value}")
-    _refuse_compression(numbers, names)
+    _refuse_negative(numbers, names)
     for less, more in [pair for pair in _IN_ORDER if numbers.keys() >= set(pair)]:
         if numbers[more] <= numbers[less]:
             got = f"got {numbers[more]}, {numbers[less]}"
             raise Impossible(f"{names[more]} must be above {names[less]}, in the same unit, {got}")
 
 
-def _refuse_compression(numbers, names):
-    """Refuse a bridge that may buckle."""
-    if not 0 <= (stress := numbers.get("residual_stress_MPa", 0)) < math.inf:
-        raise Impossible(f"{names['residual_stress_MPa']} must be 0 or above, got {stress}")
+def _refuse_negative(numbers, names):
+    """Refuse a bridge that may buckle, and a shock without a size."""
+    for key in ("residual_stress_MPa", "shock_g"):
+        if not 0 <= (value := numbers.get(key, 0)) < math.inf:
+            raise Impossible(f"{names[key]} must be 0 or above, got {value}")
 
 
 def questions(
@@ -236,14 +245,22 @@ def _question(name, device, content, table):
     pair, library = (table["pairs"] | content.get("pairs", {}))[device["pair"]], table["library"]
     if others := [key for key in pair if key not in OF_PAIRS]:
         raise NotLearnt(f"{others[0]} of a pair was not learnt")
-    refuse_impossible(device | device.get("dielectric", {}))
+    materials = content.get("materials", {})
+    for section in (device | device.get("dielectric", {}), device.get("electrode", {}), *_further(content)):
+        refuse_impossible(section)
     surfaces = library | content.get("surfaces", {})
     entries = [dict(surfaces[pair[side]]) for side in ("beam", "substrate")]
-    constant = dry.constant_of(entries, content.get("materials", {}))
+    surroundings = Surroundings.of_device(device, content, materials.get(entries[0].get("material"), {}))
+    constant = dry.constant_of(entries, materials)
     if any([entry.pop("material", "") for entry in entries]) and any(map(is_humid, airs_of(device))):
         raise NotLearnt("material of a surface was learnt in dry air alone")
     sides = [surface(entry, library) for entry in entries]
-    return of(name, device, sides, left_out=left_out, constant=constant)
+    return of(name, device, sides, left_out=left_out, constant=constant, surroundings=surroundings)
+
+
+def _further(content):
+    """Sections of liquids and materials of a file."""
+    return [section for key in ("liquids", "materials") for section in content.get(key, {}).values()]
 
 
 def airs_of(device: Mapping[str, Any]) -> tuple[float, ...]:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from typing import Any, NamedTuple
 
+from stiction.command.at_once import life
 from stiction.command.output_streams import say
 from stiction.config.units import from_si
 from stiction.contact.air import DRY, DRY_AIR, Air
@@ -239,17 +240,22 @@ def shown(estimate: Estimate) -> Iterator[str]:
         yield f"  1 in {1 / row.fraction:<10.0f}  {_number(row.size, asked):>8}     {ends}"
     if estimate.stuck is not None:
         value, low, high = (_percent(fraction, asked.most) for fraction in estimate.stuck)
-        yield f"  At {_number(asked.size, asked)} {symbol}, {value} stick (95 %: {low} to {high})."
+        yield f"  At {life.stated(asked.size, asked.unit)} {symbol}, {value} stick (95 %: {low} to {high})."
     yield f"  {chosen(estimate)}."
+    yield from (f"  {sentence}" for sentence in life.sentences(estimate, symbol))
 
 
 def chosen(estimate: Estimate, subject: str = "") -> str:
     """Interval of the size for 1 in 1000, and the end to use."""
     (low, high), asked = estimate.chosen.intervals["90"], estimate.question
     least, most = _number(low, asked), _number(high, asked)
-    safe = f"at least {most}" if isinstance(asked, Stopper) else f"at most {least}"
-    symbol = _WORDS[asked.unit][1]
-    return f"1 in {1 / CHOSEN:.0f}{subject} sticks between {least} and {most} {symbol} (90 %): use {safe}"
+    learnt = f"1 in {1 / CHOSEN:.0f}{subject} sticks between {least} and {most} {_WORDS[asked.unit][1]} (90 %)"
+    if estimate.is_fast:
+        return f"{learnt} if it separates slowly: menisci hold more in a shock, and a run says what to use"
+    if estimate.drying:
+        longest = life.bound(estimate.use, asked.unit)
+        return f"{learnt}: use at most {longest}, or it can collapse while {estimate.drying} dries"
+    return f"{learnt}: use {f'at least {most}' if estimate.is_force else f'at most {least}'}"
 
 
 #: Largest fraction that is shown.
