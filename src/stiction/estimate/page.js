@@ -24,9 +24,10 @@ const INPUTS = [
   ["touchdowns", "touchdowns", 1, 1000, 1, 1],
   ["voltage_V", "voltage in contact [V]", 0, 50, 0.5, 0],
   ["dielectric_nm", "dielectric, thickness over permittivity [nm]", 10, 1000, 10, 100],
+  ["tension_mN_per_m", "surface tension of a liquid that dries, 0 without one [mN/m]", 0, 75, 0.1, 0],
 ];
-const OWN = {[CANTILEVER]: ["thickness_um", "gap_um", "width_um", "length_um", "voltage_V", "dielectric_nm"],
-  [BRIDGE]: ["thickness_um", "below_um", "width_um", "length_um", "stress_MPa"], [STOPPER]: ["side_um", "other_um", "force_uN"]};
+const OWN = {[CANTILEVER]: ["thickness_um", "gap_um", "width_um", "length_um", "voltage_V", "dielectric_nm", "tension_mN_per_m"],
+  [BRIDGE]: ["thickness_um", "below_um", "width_um", "length_um", "stress_MPa", "tension_mN_per_m"], [STOPPER]: ["side_um", "other_um", "force_uN"]};
 const DRY = "dry", DRIEST = 0.345, airOf = (value) => value("humidity") < DRIEST ? DRY : value("humidity");
 const PAIR = ["known_skewness", "known_kurtosis"]; // a file states both or neither
 const OPEN = ["hurst", "corner_rad_per_um", "cutoff_rad_per_um", "skewness", "kurtosis"], byId = (id) => document.getElementById(id);
@@ -55,7 +56,7 @@ function questionOf({own, kind, like, substrate, value, open}) {
   const asked = {stated: of(like), members: open ? Object.keys(TABLE.library).map(of) : [], averaged: false,
     humidities: [airOf(value) === DRY ? 0 : airOf(value)], touchdowns: value("touchdowns")};
   if (kind === STOPPER) return {...asked, sides: ["side_um", "other_um"].map((key) => value(key) * 1e-6), force: value("force_uN") * 1e-6};
-  const beam = {...asked, thickness: value("thickness_um") * 1e-6, width: value("width_um") * 1e-6, length: value("length_um") * 1e-6};
+  const beam = {...asked, thickness: value("thickness_um") * 1e-6, width: value("width_um") * 1e-6, length: value("length_um") * 1e-6, liquid: value("tension_mN_per_m") * 1e-3};
   if (kind === BRIDGE) return {...beam, gap: value("below_um") * 1e-6, stress: value("stress_MPa") * 1e6};
   const gap = value("gap_um") * 1e-6, energy = energyOf(value("voltage_V"), value("dielectric_nm") * 1e-9, gap);
   return {...beam, added: energy, gap};
@@ -90,23 +91,42 @@ function write(found, {kind, value}) {
   byId("table").innerHTML = `${caption}<thead><tr><th scope="col">stuck</th><th scope="col">${name}</th><th scope="col">90 %</th>` +
     `<th scope="col">95 %</th></tr></thead><tbody>${found.rows.map(row).join("")}</tbody>`;
   byId("said").className = "said";
-  const [least, most] = found.rows[2].intervals["90"].map(micro), safe = kind === STOPPER ? `at least ${most}` : `at most ${least}`;
+  const dried = found.life && found.life.dried, lowest = found.rows[2].intervals["90"][0], mustDry = dried && dried[0] < lowest;
+  const [least, most] = found.rows[2].intervals["90"].map(micro);
+  const safe = kind === STOPPER ? `at least ${most}` : mustDry ? `at most ${down(dried[0] * 1e6)}, or it can collapse while ${LIQUID} dries` : `at most ${least}`;
   byId("said").textContent = `1 in 1000 sticks between ${least} and ${most} ${symbol} (90 %): use ${safe}.`;
   const [middle, low, high] = found.stuck.map((part) => percent(part, value("touchdowns")));
   byId("stuck").textContent = `At ${value(key)} ${symbol}, ${middle} stick (95 %: ${low} to ${high}).`;
+  byId("life").textContent = found.life ? livesOf(found.life, value(key)).join("\n") : "";
+}
+const LIQUID = "Mine", GRAVITY = 9.80665, FATES = ["stands", "may collapse", "collapses"];
+function down(number) { // to three digits, as a bound
+  const [digits, power] = number.toExponential(8).split("e");
+  return Number(`${digits.slice(0, 4)}e${power}`);
+}
+function livesOf({dried, shock}, length) {
+  const touches = `At ${length} µm it does not touch below a half-sine shock of ${grouped(down(shock / GRAVITY))} g.`;
+  if (!dried) return [touches];
+  const [stands, collapses, free] = dried.map((size) => down(size * 1e6)), fate = dried.slice(0, 2).filter((size) => length * 1e-6 > size).length;
+  return [`While ${LIQUID} dries, beams stand up to ${stands} µm and collapse beyond ${collapses} µm; ` +
+    `after a collapse they stay down if they are longer than ${free} µm.`, `At ${length} µm it ${FATES[fate]} while ${LIQUID} dries.`, touches];
 }
 function refuse(reason) {
   byId("said").className = "said refused";
   byId("said").textContent = `Not known at once: ${reason.message}. A run computes it.`;
   byId("table").innerHTML = "<caption>No number</caption>";
-  byId("stuck").textContent = "";
+  byId("stuck").textContent = byId("life").textContent = "";
+}
+function liquidsOf(kind, value) {
+  const tension = value("tension_mN_per_m");
+  return kind !== STOPPER && tension ? `liquids: {${LIQUID}: {surface_tension_mN_per_m: ${tension}}}\n` : "";
 }
 function yamlOf({own, kind, like, substrate, value, open}) {
   const surface = Object.entries({...own, ...(open ? {like} : {})}).map(([key, of]) => `${key}: ${of}`).join(", ");
   const air = `humidities: [${airOf(value)}], touchdowns: ${value("touchdowns")}`;
   return `run: {pairs: [mine], studies: []}\nsurfaces:\n  Mine: {${surface}}\npairs:\n` +
     `  mine: {beam: Mine, substrate: ${substrate}, gap_um: ${value(kind === BRIDGE ? "below_um" : "gap_um")}, humidities: [${airOf(value)}]}\n` +
-    `devices:\n  ${NAMES[kind]}: {kind: ${kind}, pair: mine, ${SIZES[kind](value)}, ${air}}\n`;
+    `${liquidsOf(kind, value)}devices:\n  ${NAMES[kind]}: {kind: ${kind}, pair: mine, ${SIZES[kind](value)}, ${air}}\n`;
 }
 const NAMES = {[CANTILEVER]: "Lever", [BRIDGE]: "Bridge", [STOPPER]: "Bump"};
 const SIZES = {
