@@ -169,6 +169,11 @@ def test_the_density_of_the_beams_material_counts():
     ("device", "sections", "reason"),
     [
         (C1, {"liquids": {"Bad": {"surface_tension_mN_per_m": 0}}}, "surface_tension_mN_per_m must be above 0"),
+        (
+            C1,
+            {"liquids": {"Bad": {"surface_tension_mN_per_m": 20, "contact_angle_deg": 181}}},
+            "contact_angle_deg must be from 0 to 180, got 181",
+        ),
         (SPRING | {"mass_ng": -1}, {}, "mass_ng must be above 0"),
         (SPRING | {"electrode": {"area_um2": 0, "gap_um": 2}}, {}, "area_um2 must be above 0"),
         (C1 | {"shock_g": -1}, {}, "shock_g must be 0 or above"),

@@ -50,6 +50,8 @@ OF_DEFAULTS = {"attraction": {"reach": "all"}}
 POSITIVE = ("rms_nm", "hurst", "corner_rad_per_um", "cutoff_rad_per_um", "kurtosis", "thickness_um", "gap_um")
 POSITIVE += ("width_um", "length_um", "contact_um", "restoring_force_uN", "thickness_nm", "permittivity", "touchdowns")
 POSITIVE += ("mass_ng", "stiffness_N_per_m", "area_um2", "surface_tension_mN_per_m", "density_kg_per_m3")
+#: Largest contact angle [°].
+_STRAIGHT = 180
 #: Keys of which the second number must be above the first. A length in metres is not.
 _IN_ORDER = ("thickness_um", "length_um"), ("gap_um", "length_um"), ("corner_rad_per_um", "cutoff_rad_per_um")
 #: Numbers that a surface may leave open.
@@ -206,10 +208,12 @@ def refuse_impossible(numbers: Mapping[str, Any], names: Mapping[str, str] | Non
 
 
 def _refuse_negative(numbers, names):
-    """Refuse a bridge that may buckle, and a shock without a size."""
+    """Refuse a bridge that may buckle, a shock without a size, and an impossible angle."""
     for key in ("residual_stress_MPa", "shock_g"):
         if not 0 <= (value := numbers.get(key, 0)) < math.inf:
             raise Impossible(f"{names[key]} must be 0 or above, got {value}")
+    if not 0 <= (angle := numbers.get("contact_angle_deg", 0)) <= _STRAIGHT:
+        raise Impossible(f"contact_angle_deg must be from 0 to {_STRAIGHT}, got {angle}")
 
 
 def questions(

@@ -43,7 +43,8 @@ _OF_LENGTHS = (
     "bridges, in dry air, and refuses all else. Below are lengths for 1 in 1000 beside those of drawn surfaces that it "
     "has not learnt, with tips changed by full contact as in a run, on strips of at most 12 µm. The error is the "
     "logarithm of the latter over the estimate, negative on the unsafe side. Half: median of half of the interval of "
-    "90 %. In brackets: 95 % range of the share inside."
+    "90 %. In brackets: 95 % range of the share inside. Drying, shock and pull-in are closed forms of "
+    "[the life](../life.md). Where water condenses, the estimate of a device with `shock_g` leaves the size to a run."
 )
 _OF_BRIDGES = (
     "The same for bridges, beside finite elements of their middle on force laws as of a run. Errors and halves are of "
