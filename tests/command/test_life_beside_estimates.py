@@ -85,6 +85,7 @@ def test_a_bridge_may_be_brought_down_and_never_is_for_certain(tmp_path, capsys)
     text = FILE.replace("cantilever", "bridge").replace("2.6, gap_um: 20", "2, gap_um: 2")
     lines = said(tmp_path, capsys, with_keys("residual_stress_MPa: 50, length_um: 164.696, shock_g: 9000000", text))
     assert "At 164.696 µm it may collapse while water dries, and stands while Hexane dries." in lines
+    assert lines[2].endswith("after a collapse they stay down if they are longer than 181 µm; shorter ones may, too.")
     assert lines[-1] == "Its own shock of 9e+06 g can bring it down."
 
 

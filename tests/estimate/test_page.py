@@ -107,7 +107,7 @@ def in_python(question, table):
 
 def life_of(found):
     """Lengths of beams that dry, and the shock: none of a stopper, to which the page gives no mass."""
-    dried = [length for each in found.dried.values() for length in vars(each).values()]
+    dried = [length for each in found.dried.values() for length in each.lengths]
     return [] if found.is_force else [*dried, found.touching.shock]
 
 

@@ -24,7 +24,13 @@ class Dried:
 
     stands: float  #: longest to stand for certain [m]
     collapses: float  #: longest that can stand [m]
-    released: float  #: longest to come free after a collapse: of bridges, it bounds them from above [m]
+    released: float  #: longest to come free after a collapse [m]
+    is_released: bool  #: whether all shorter ones do: the middle of a bridge may hold it
+
+    @property
+    def lengths(self) -> tuple[float, float, float]:
+        """Its lengths [m]."""
+        return self.stands, self.collapses, self.released
 
 
 @dataclass(frozen=True)
@@ -101,9 +107,10 @@ class BeamLife:
 
     def dried(self) -> dict[str, Dried]:
         """Lengths of beams that dry, by liquid."""
+        beam, liquids = self.beam, self.surroundings.liquids.items()
         return {
-            name: Dried(self.beam.standing_each(liquid), self.beam.standing(liquid), self.beam.released(liquid))
-            for name, liquid in self.surroundings.liquids.items()
+            name: Dried(beam.standing_each(liquid), beam.standing(liquid), beam.released(liquid), beam.clamps == 1)
+            for name, liquid in liquids
         }
 
     def touching(self, length: float) -> Touching:

@@ -97,19 +97,19 @@ function write(found, {kind, value}) {
   byId("said").textContent = `1 in 1000 sticks between ${least} and ${most} ${symbol} (90 %): use ${safe}.`;
   const [middle, low, high] = found.stuck.map((part) => percent(part, value("touchdowns")));
   byId("stuck").textContent = `At ${value(key)} ${symbol}, ${middle} stick (95 %: ${low} to ${high}).`;
-  byId("life").textContent = found.life ? livesOf(found.life, value(key)).join("\n") : "";
+  byId("life").textContent = found.life ? livesOf(found.life, value(key), kind).join("\n") : "";
 }
 const LIQUID = "Mine", GRAVITY = 9.80665, FATES = ["stands", "may collapse", "collapses"];
 function down(number) { // to three digits, as a bound
   const [digits, power] = number.toExponential(8).split("e");
   return Number(`${digits.slice(0, 4)}e${power}`);
 }
-function livesOf({dried, shock}, length) {
+function livesOf({dried, shock}, length, kind) {
   const touches = `At ${length} µm it does not touch below a half-sine shock of ${grouped(down(shock / GRAVITY))} g.`;
   if (!dried) return [touches];
   const [stands, collapses, free] = dried.map((size) => down(size * 1e6)), fate = dried.slice(0, 2).filter((size) => length * 1e-6 > size).length;
   return [`While ${LIQUID} dries, beams stand up to ${stands} µm and collapse beyond ${collapses} µm; ` +
-    `after a collapse they stay down if they are longer than ${free} µm.`, `At ${length} µm it ${FATES[fate]} while ${LIQUID} dries.`, touches];
+    `after a collapse they stay down if they are longer than ${free} µm${kind === BRIDGE ? "; shorter ones may, too" : ""}.`, `At ${length} µm it ${FATES[fate]} while ${LIQUID} dries.`, touches];
 }
 function refuse(reason) {
   byId("said").className = "said refused";

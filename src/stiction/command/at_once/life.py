@@ -49,10 +49,11 @@ def _drying(liquid, dried):
     """Lengths of beams that dry."""
     if math.isinf(dried.stands):
         return f"Beams of any length stand while {liquid} dries."
-    stands, collapses, released = (bound(length, "um") for length in vars(dried).values())
+    stands, collapses, released = (bound(length, "um") for length in dried.lengths)
+    shorter = "" if dried.is_released else "; shorter ones may, too"
     return (
         f"While {liquid} dries, beams stand up to {stands} µm and collapse beyond {collapses} µm; "
-        f"after a collapse they stay down if they are longer than {released} µm."
+        f"after a collapse they stay down if they are longer than {released} µm{shorter}."
     )
 
 
