@@ -235,7 +235,7 @@ def root(function: Callable[[float], float], low: float, high: float) -> float:
 
     Examples
     --------
-    >>> round(root(lambda x: x**3 - 2, 0.0, 2.0) ** 3, 12)
+    >>> round(root(lambda x: x**3 - 2, 0.0, 2.0) ** 3, 9)
     2.0
     """
     at_low, at_high = function(low), function(high)

@@ -99,7 +99,7 @@ function write(found, {kind, value}) {
   byId("stuck").textContent = `At ${value(key)} ${symbol}, ${middle} stick (95 %: ${low} to ${high}).`;
   byId("life").textContent = found.life ? livesOf(found.life, value(key), kind).join("\n") : "";
 }
-const LIQUID = "Mine", GRAVITY = 9.80665, FATES = ["stands", "may collapse", "collapses"];
+const LIQUID = "liquid", GRAVITY = 9.80665, FATES = ["stands", "may collapse", "collapses"];
 function down(number) { // to three digits, as a bound
   const [digits, power] = number.toExponential(8).split("e");
   return Number(`${digits.slice(0, 4)}e${power}`);
