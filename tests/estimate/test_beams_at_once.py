@@ -58,8 +58,8 @@ def test_200_beams_have_the_lengths_shocks_and_voltages_of_the_engine(clamps):
     rng = np.random.default_rng(clamps)
     for _ in range(NUMBER):
         beam, length, liquid = drawn(clamps, rng)
-        found = beam.standing_each(liquid), beam.standing(liquid), beam.released(liquid)
-        np.testing.assert_allclose(found, lengths(beam, liquid), rtol=1e-9)
+        computed = beam.standing_each(liquid), beam.standing(liquid), beam.released(liquid)
+        np.testing.assert_allclose(computed, lengths(beam, liquid), rtol=1e-9)
         shock, voltage = touching(beam, length)
         assert beam.slow_shock(length, DENSITY) == pytest.approx(shock, rel=1e-9 if clamps == 1 else 1e-6)
         assert beam.pull_in_at_once(length) == pytest.approx(voltage, rel=1e-9)
@@ -72,8 +72,8 @@ def test_a_half_sine_shock_is_that_of_the_engine_or_less(clamps):
         beam, length, _ = drawn(clamps, rng)
         engine = of_engine(beam, length)
         shock = touch.touching_acceleration(engine, clamps, DENSITY) / touch.shock_factor(engine, clamps)
-        found = beam.half_sine_shock(length, DENSITY)
-        assert (1 - (MODES if clamps == 2 else 1e-9)) * shock < found < (1 + 1e-9) * shock
+        computed = beam.half_sine_shock(length, DENSITY)
+        assert (1 - (MODES if clamps == 2 else 1e-9)) * shock < computed < (1 + 1e-9) * shock
 
 
 @pytest.mark.parametrize("clamps", [1, 2])

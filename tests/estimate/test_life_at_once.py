@@ -82,10 +82,10 @@ def test_example_devices_have_the_numbers_of_their_run():
     bridge = estimated(R1 | {"length_um": 164.69616144184133}, **liquids)
     bump = estimated({key: SPRING[key] for key in ("kind", "pair", "contact_um", "mass_ng", "humidities")}
                      | {"restoring_force_uN": 20})  # fmt: skip
-    found = [1e6 * length for each in (lever, bridge) for dried in each.dried.values() for length in dried.lengths]
+    computed = [1e6 * length for each in (lever, bridge) for dried in each.dried.values() for length in dried.lengths]
     expected = [199.255309285, 246.216439583, 234.084773309, 269.899135101, 332.303746292, 315.930354917]
     expected += [152.343836324, 180.520879631, 181.993063597, 222.962700921, 269.713677530, 257.298488024]
-    np.testing.assert_allclose(found, expected, rtol=1e-9)
+    np.testing.assert_allclose(computed, expected, rtol=1e-9)
     assert lever.touching.voltage == pytest.approx(420.741052017, rel=1e-9)
     shocks = [each.touching.shock / FREE_FALL for each in (lever, bridge, bump)]
     np.testing.assert_allclose(shocks, [153547.086617, 2199230.21819, 23063.9799373], rtol=1e-4)
@@ -142,6 +142,7 @@ def test_an_electrode_pulls_in_as_the_engine_says(way, gap):
 def test_a_shock_leaves_the_size_to_a_run_where_water_condenses(device):
     shaken = estimated(device | {"shock_g": 3000})
     assert shaken.is_fast
+    assert math.isnan(shaken.use)
     assert not estimated(device).is_fast
     assert shaken.rows == estimated(device).rows
     if device["kind"] != "bridge":

@@ -71,9 +71,14 @@ class Estimate:
         return liquid if liquid and self.dried[liquid].stands < self._learnt else None
 
     @property
-    def use(self) -> float:
-        """Largest length or smallest force to use [SI]. As in a run, a stated liquid must not make a beam collapse."""
+    def _without_shock(self):
+        """Largest length or smallest force if it separates slowly [SI]. As in a run, no stated liquid collapses it."""
         return self.dried[self.drying].stands if self.drying else self._learnt
+
+    @property
+    def use(self) -> float:
+        """Largest length or smallest force to use, NaN where a run alone knows it, see `is_fast` [SI]."""
+        return math.nan if self.is_fast else self._without_shock
 
     @property
     def is_fast(self) -> bool:
@@ -82,8 +87,8 @@ class Estimate:
 
     @cached_property
     def touching(self) -> Touching:
-        """Causes of its contact, at its own size or that to use."""
-        return self.life.touching(self.question.size or self.use)
+        """Causes of its contact, at its own size or that to use if it separates slowly."""
+        return self.life.touching(self.question.size or self._without_shock)
 
 
 def answer(

@@ -141,7 +141,7 @@ class BentBeam:
 
     def _bent_by(self, forces):
         """Factors of the polynomials under forces on them, by elimination between neighbours."""
-        basis, bent, ratio = _basis(self.clamps), [*forces], 0.0
+        basis, bent = _basis(self.clamps), [*forces]
         stiffness = [bending + self.tension * slope for bending, slope in zip(basis.bending, basis.slope, strict=True)]
         couplings = [self.tension * coupling for coupling in basis.coupling]
         for k, coupling in enumerate(couplings):
@@ -183,11 +183,11 @@ class BentBeam:
 
     def _work(self, load, factors):
         """Work of a load from rest to some deflections, at λ = 1."""
-        basis, (parts, weights) = _basis(self.clamps), _gauss(_PARTS)
+        basis, (fractions, weights) = _basis(self.clamps), _gauss(_PARTS)
 
         def work(force, deflection):
             """Work of a force along a deflection."""
-            return deflection * _dot(weights, [force(part * deflection) for part in parts])
+            return deflection * _dot(weights, [force(fraction * deflection) for fraction in fractions])
 
         along = [work(load.along, _dot(row, factors)) for row in basis.at]
         at_end = work(load.at_end, _dot(basis.end, factors)) if load.at_end and self.clamps == 1 else 0.0
@@ -240,15 +240,15 @@ def root(function: Callable[[float], float], low: float, high: float) -> float:
     """
     at_low, at_high = function(low), function(high)
     for _ in range(_ITERATIONS):
-        place = (low * at_high - high * at_low) / (at_high - at_low)
-        at_place = function(place)
-        if abs(place - high) < _TOLERANCE or not at_place:
-            return place
-        if at_place * at_high < 0:
+        guess = (low * at_high - high * at_low) / (at_high - at_low)
+        at_guess = function(guess)
+        if abs(guess - high) < _TOLERANCE or not at_guess:
+            return guess
+        if at_guess * at_high < 0:
             low, at_low = high, at_high
         else:
             at_low /= 2
-        high, at_high = place, at_place
+        high, at_high = guess, at_guess
     raise NotConverged("root of a function", abs(at_high), _TOLERANCE, _ITERATIONS)
 
 

@@ -240,7 +240,7 @@ def shown(estimate: Estimate) -> Iterator[str]:
         yield f"  1 in {1 / row.fraction:<10.0f}  {_number(row.size, asked):>8}     {ends}"
     if estimate.stuck is not None:
         value, low, high = (_percent(fraction, asked.most) for fraction in estimate.stuck)
-        yield f"  At {life.stated(asked.size, asked.unit)} {symbol}, {value} stick (95 %: {low} to {high})."
+        yield f"  At {life.as_stated(asked.size, asked.unit)} {symbol}, {value} stick (95 %: {low} to {high})."
     yield f"  {chosen(estimate)}."
     yield from (f"  {sentence}" for sentence in life.sentences(estimate, symbol))
 

@@ -19,7 +19,7 @@ def sentences(estimate: Estimate, symbol: str) -> Iterator[str]:
     if estimate.dried and estimate.question.size is not None:
         yield _fates(estimate, symbol)
     yield from _touching(estimate, symbol)
-    yield from _own(estimate)
+    yield from _own_causes(estimate)
 
 
 def bound(size: float, unit: str, up: bool = False) -> str:
@@ -34,12 +34,12 @@ def bound(size: float, unit: str, up: bool = False) -> str:
     return grouped(float(text)) if float(text) >= _GROUPED else text
 
 
-def stated(size: float, unit: str) -> str:
+def as_stated(size: float, unit: str) -> str:
     """Size in a unit, as a device states it.
 
     Examples
     --------
-    >>> stated(219.35e-6, "um")
+    >>> as_stated(219.35e-6, "um")
     '219.35'
     """
     return f"{from_si(size, unit):g}"
@@ -63,22 +63,21 @@ def _fates(estimate, symbol):
     for liquid, dried in estimate.dried.items():
         fates.setdefault((length > dried.stands) + (length > dried.collapses), []).append(liquid)
     texts = [f"{_FATES[fate]} while {' or '.join(liquids)} dries" for fate, liquids in fates.items()]
-    return f"At {stated(length, estimate.question.unit)} {symbol} it {', and '.join(texts)}."
+    return f"At {as_stated(length, estimate.question.unit)} {symbol} it {', and '.join(texts)}."
 
 
 def _touching(estimate, symbol):
-    """Voltage and shock below which a device does not touch, at its own size or that to use."""
+    """Voltage and shock below which a device does not touch, at its own size or another one, on its safe side."""
     touching, asked = estimate.touching, estimate.question
     limits = [] if math.isnan(touching.voltage) else [f"{bound(touching.voltage, 'V')} V"]
     limits += [] if math.isnan(touching.shock) else [f"a half-sine shock of {bound(touching.shock, 'g')} g"]
     if limits:
-        size = (
-            bound(estimate.use, asked.unit, estimate.is_force) if asked.size is None else stated(asked.size, asked.unit)
-        )
+        safe = bound(touching.size, asked.unit, estimate.is_force)
+        size = safe if asked.size is None else as_stated(asked.size, asked.unit)
         yield f"At {size} {symbol} it does not touch below {' or '.join(limits)}."
 
 
-def _own(estimate):
+def _own_causes(estimate):
     """What the voltage and the shock of a device do to it."""
     touching, surroundings = estimate.touching, estimate.question.surroundings
     if (surroundings.potential or 0.0) >= touching.voltage:
