@@ -51,7 +51,8 @@ suppress_warnings = ["ref.python"]
 # Public names are described where they are defined.
 nitpick_ignore += [("py:obj", f"stiction.{name}") for name in stiction.__all__]
 
-# Studies that run when the documentation is built.
+# Studies that run when the documentation is built, and show their output without bars of progress.
+stiction.show_progress(False)
 sphinx_gallery_conf = {
     "examples_dirs": "gallery",
     "gallery_dirs": "_gallery",

@@ -33,6 +33,7 @@ class Mark:
     label: str = ""  #: in the legend
     filled: bool = True
     text_color: str = "black"
+    marker: str = "o"  #: of a single number
 
 
 def draw(panel: Axes, rows: Mapping[str, Sequence[Mark]], *, column: str | None = None) -> None:
@@ -45,6 +46,8 @@ def draw(panel: Axes, rows: Mapping[str, Sequence[Mark]], *, column: str | None 
         panel.axhline(row, color="0.9", linewidth=0.6, zorder=0)
         for mark in marks:
             _draw(panel, row, mark)
+            if not mark.text:
+                continue
             if column is not None:
                 panel.annotate(mark.text, (1, row), **in_column, color=mark.text_color)
             else:
@@ -94,7 +97,9 @@ def _draw(panel, row, mark):
         panel.plot([mark.low, mark.high], [row] * 2, "|", color=mark.color, markersize=_END)
     else:
         face = mark.color if mark.filled else "white"
-        panel.errorbar([mark.high], [row], xerr=[mark.error], fmt="o", markersize=4, markerfacecolor=face, **style)
+        panel.errorbar(
+            [mark.high], [row], xerr=[mark.error], fmt=mark.marker, markersize=4, markerfacecolor=face, **style
+        )
 
 
 def references(panel: Axes, length: float, base: str, references_of_case: pd.DataFrame) -> None:

@@ -7,11 +7,13 @@ import pytest
 from answers import BEAMS, BUDGETS, STOPPERS, safe
 from charted import charted
 from drawn_curves import etched, law_of, mapped, rough
+from matplotlib.figure import Figure
 from matplotlib.text import Text
 from PIL import Image
 from test_stage_life import OF
 
 from stiction.answer.data import Between
+from stiction.answer.sought import FORCE, LENGTH
 from stiction.report.axes import figures as of_axes
 from stiction.report.budget import figures as of_budgets
 from stiction.report.devices import figures as of_devices
@@ -64,10 +66,34 @@ def test_the_legend_of_a_life_names_what_is_drawn_alone(build, short):
     figure = life.figure({"C1": answers}, {"C1": build})
     names = [text.get_text() for text in figure.legends[0].get_texts()]
     assert not any("hold" in name for name in names), "no row of a beam that is a length is about what holds it"
-    assert ("red: does not allow it, with errors of inputs" in names) == short
+    assert "the same with errors of inputs" not in names, "nothing stricter is known"
     assert "stick: whether it then sticks" in names, "a limit that is too short keeps the colour of its question"
     red = [text for panel in figure.axes for text in panel.texts if text.get_color() == life._SHORT]
     assert bool(red) == short
+
+
+@pytest.mark.parametrize("size", [80e-6, 90e-6])
+def test_a_limit_with_errors_has_a_mark_at_its_size_and_is_the_first_number_of_its_row(size):
+    answers = layout(beam_answers({0.67: safe()}, {}, OF), OF, length=250e-6)
+    row = next(answer for answer in life.answers_of(answers) if answer.unit == "m")
+    figure = life.figure({"C1": answers}, {"C1": 100e-6}, None, {"C1": {row.name: size}})
+    panel = figure.axes[0]
+    assert [line.get_xdata()[0] for line in panel.lines if line.get_marker() == "D"] == pytest.approx([1e6 * size])
+    assert sum(text.get_text().startswith(f"{1e6 * size:.0f}\nexact: ") for text in panel.texts) == 1
+    assert panel.get_title(loc="left") == f"C1: build 100 µm,\nbut {1e6 * size:.0f} µm by its strictest row"
+    assert "the same with errors of inputs" in [text.get_text() for text in figure.legends[0].get_texts()]
+
+
+@pytest.mark.parametrize(("sought", "allowed"), [(LENGTH, 90.0), (FORCE, 110.0)])
+def test_sizes_that_the_strictest_row_does_not_allow_are_shaded(sought, allowed):
+    panel = Figure().add_subplot(xlim=(50.0, 150.0))
+    life._shade(panel, 100.0, sought.more_is_better)
+    low, high = panel.patches[0].get_x(), panel.patches[0].get_x() + panel.patches[0].get_width()
+    assert low < 200.0 - allowed < high
+    assert not low < allowed < high, "control: the safe side"
+    ends = panel.get_xlim()
+    assert ends[0] <= low < high <= ends[1]
+    assert (ends[0] < low) != (ends[1] > high), "room on the safe side alone"
 
 
 @pytest.mark.parametrize(("size", "said"), [(90e-6, ["90"]), (100.2e-6, [])])

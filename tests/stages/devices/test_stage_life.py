@@ -22,6 +22,7 @@ from stiction.life import drying, freeing, holding, touch
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
 from stiction.report import html
+from stiction.report.answer import words
 from stiction.report.devices import life as report
 from stiction.report.devices.pages import Page, Section, with_life
 from stiction.report.format import safe_size
@@ -29,7 +30,7 @@ from stiction.report.page import Summary
 from stiction.report.style import save
 from stiction.run import storage
 from stiction.stages.answer.beside import unasked
-from stiction.stages.life.answers import QUESTIONS, answers_of, layout
+from stiction.stages.life.answers import QUESTIONS, Name, answers_of, layout
 from stiction.stages.life.beams import beam_answers, length_of
 from stiction.stages.life.inputs import BeamErrors, BeamKeys, Electrode, Liquid, StopperKeys
 from stiction.stages.life.stoppers import stopper_answers
@@ -463,7 +464,7 @@ def test_no_text_of_a_row_decides_about_a_sentence(found):
         assert report.sentences(blank) == expected
 
 
-def test_the_figure_has_a_row_for_every_length_with_its_number_left_of_which_is_its_label(found):
+def test_the_figure_has_a_row_for_every_length_between_its_label_and_its_number(found):
     builds = dict.fromkeys(found, np.nan)
     figure = report.figure(found, builds)
     save(figure)  # lays it out
@@ -474,8 +475,8 @@ def test_the_figure_has_a_row_for_every_length_with_its_number_left_of_which_is_
         for one, text in zip(shown, panel.texts, strict=True):
             assert text.get_text().split()[-1] == report.significant(one.high * 1e6, up=unit == "N")
         boxes = [text.get_window_extent() for text in panel.texts]
-        assert panel.bbox.x0 <= min(box.x0 for box in boxes)
-        assert panel.bbox.x1 >= max(box.x1 for box in boxes)
+        assert panel.bbox.x1 <= min(box.x0 for box in boxes), "beside the panel"
+        assert figure.bbox.x1 >= max(box.x1 for box in boxes)
     assert not covering(figure)
 
 
@@ -494,7 +495,7 @@ def test_limits_that_do_not_allow_the_size_to_build_are_red(found, factor):
         (panel,) = report.figure({name: dataset}, {name: build}, {}, {name: names}).axes
         texts = {round(text.xy[1]): text.get_text() for text in panel.texts}
         for k, one in enumerate(shown):
-            assert ("inputs exact: " in texts[k]) == (one.name in names)
+            assert ("exact: " in texts[k]) == (one.name in names)
             assert ("at most " in texts[k]) == (is_length and np.isnan(one.low)), "no safe length"
         red = [round(text.xy[1]) for text in panel.texts if text.get_color() == report._SHORT]  # noqa: SLF001
         short = [k for k, end in enumerate(ends) if (end < build if is_length else end > build)]
@@ -502,8 +503,21 @@ def test_limits_that_do_not_allow_the_size_to_build_are_red(found, factor):
         assert {shown[k].name for k in short} <= names.keys(), "errors of the inputs make limits stricter"
         if factor > 1:
             assert short
-        said = " ".join(report.judged_without(replace(built, unasked=stricter)))
+        beside = replace(built, unasked=stricter)
+        said = " ".join(report.judged_without(beside))
         assert all(safe_size(limit.size, built.sought) in said for limit in stricter), "said as it is drawn"
+        assert ("Several at once can be stricter" in said) == (
+            len(words.stricter(replace(built, unasked=stricter))) > 1
+        )
+
+
+def test_beams_of_which_no_length_is_known_to_come_free_may_stay_down_below_its_upper_bound(found):
+    dataset = found["C1"]
+    is_release = dataset.answer.str.startswith(Name.RELEASED)
+    assert is_release.any()
+    for lows, may in ((dataset.low, False), (dataset.low.where(~is_release), True)):
+        said = " ".join(report.sentences(dataset.assign(low=lows)))
+        assert ("; shorter ones may, too" in said) == may
 
 
 def test_a_page_says_the_life_and_shows_all_answers(found):

@@ -2,11 +2,13 @@
 
 import textwrap
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
 from stiction.answer.data import Answer, Between
 from stiction.answer.sought import FORCE, LENGTH, SOUGHT
@@ -29,7 +31,7 @@ from stiction.report.style import (
 )
 from stiction.report.table import Table, table_stage
 from stiction.rounding import is_equal
-from stiction.stages.answer.beside import is_short
+from stiction.stages.answer.beside import is_short, unsafe_end
 from stiction.stages.devices import device_warnings
 from stiction.stages.life.answers import FREE, HOLD, QUESTIONS, STICK, TOUCH, LifeRow, Name, answers_of
 
@@ -66,11 +68,16 @@ _QUESTIONS = {
     HOLD: "hold: what holds it",
     FREE: "free: what frees it",
 }
-#: Colours of a limit below the size to build, and of one that leaves open what is safe.
-_SHORT, _UNKNOWN = "#B00020", "0.4"
-#: Height of the legend, and largest height of the figure [in]. Share of its width for labels, and mean width of their
-#: characters [in].
-_LEGEND, _TALLEST, _LABELS, _CHARACTER = 0.3, 100.0, 0.4, 0.045
+#: Colours of a limit that does not allow the size to build, and of others, whose inputs are exact.
+_SHORT, _EXACT = "#B00020", "0.3"
+#: Markers of a limit with the errors of the inputs, and of a length below which an unknown one is safe. Ground of sizes
+#: that a row does not allow.
+_DECIDES, _BELOW, _FORBIDDEN = "D", "<", {"color": _SHORT, "alpha": 0.08, "linewidth": 0, "zorder": -1}
+#: What is safer, by whether more of a size is better.
+_SAFER = {False: "shorter", True: "stronger"}
+#: Heights of the legend and of a line of a title, and largest height of the figure [in]. Share of its width for labels,
+#: and mean width of their characters [in]. Room on the safe side of an axis, over its length.
+_LEGEND, _TITLE, _TALLEST, _LABELS, _CHARACTER, _ROOM = 0.3, 0.12, 100.0, 0.38, 0.045, 0.1
 
 
 def table(life: Mapping[str, xr.Dataset]) -> Table:
@@ -172,7 +179,10 @@ def judged_without(answer: Answer) -> list[str]:
     sizes = words.unasked(answer)
     if not sizes or answer.forbidden:
         return []
-    return [f"Not inside, as nothing that you stated asks for it: {listed(sizes)}, with the errors of the inputs."]
+    together = " Several at once can be stricter: state them." if len(words.stricter(answer)) > 1 else ""
+    return [
+        f"Not inside, as nothing that you stated asks for it: {listed(sizes)}, with the errors of the inputs.{together}"
+    ]
 
 
 def _limit(answers, length):
@@ -291,11 +301,13 @@ def _drying(answers, at, length):
         fates.setdefault((length > limit.low) + (length > limit.high), []).append(liquid)
     now = [f"{_FATES[fate]} when it is dried from {listed(names)}" for fate, names in fates.items()]
     limits = ", ".join(f"{_low(limit)} and {_high(limit)} µm ({liquid})" for liquid, limit in standing.items())
-    free = ", ".join(f"{_high(limit)} µm ({liquid})" for liquid, limit in _liquids(answers, Name.RELEASED).items())
+    released = _liquids(answers, Name.RELEASED)
+    free = ", ".join(f"{_high(limit)} µm ({liquid})" for liquid, limit in released.items())
+    shorter = "; shorter ones may, too" if any(np.isnan(limit.low) for limit in released.values()) else ""
     return [
         *([f"{at} {', and '.join(now)}."] if np.isfinite(length) else []),
         f"Beams that dry stand up to the first of these lengths and collapse beyond the second: {limits}. After a "
-        f"collapse they stay down if they are longer than {free}.",
+        f"collapse they stay down if they are longer than {free}{shorter}.",
     ]
 
 
@@ -359,43 +371,81 @@ def figure(
     """Limits of the lives of devices as dot plots: lengths of beams, or forces of stoppers, a panel for each device.
 
     Sizes to build are by device [m or N], as are stricter ones between stated airs, and those by the names of rows that
-    nothing stated asks for, with the errors of the inputs. Red numbers: stricter.
+    nothing stated asks for, with the errors of the inputs. Sizes that the strictest row does not allow are shaded.
     """
-    answers = {name: _rows(dataset) for name, dataset in life.items()}
+    shown = {name: _rows(dataset) for name, dataset in life.items()}
+    sought = {name: _sought(dataset) for name, dataset in life.items()}
     widest = int(_LABELS * page_width(DOUBLE) / _CHARACTER)
-    rows = {
-        name: _marks(rows_of_device, builds[name], (unasked or {}).get(name, {}), widest)
-        | _mark_between((betweens or {}).get(name), builds[name], _sought(life[name]), widest)
-        for name, rows_of_device in answers.items()
-    }
-    heights = [dots.height(labels) for labels in rows.values()]
+    rows, strictest = {}, {}
+    for name, answers in shown.items():
+        beside, between = (unasked or {}).get(name, {}), (betweens or {}).get(name)
+        rows[name] = _marks(answers, builds[name], beside, widest)
+        rows[name] |= _mark_between(between, builds[name], sought[name], widest)
+        strictest[name] = _strictest(answers, [*beside.values(), *([between.size] if between else [])], builds[name])
+    heights = [dots.height(labels) + _TITLE for labels in rows.values()]
     size = DOUBLE, min(sum(heights) + _LEGEND, _TALLEST)
     figure_of_lives, axes = panels(len(rows), 1, size, height_ratios=heights)
     for panel, (name, marks) in zip(axes[:, 0], rows.items(), strict=True):
-        factor, unit = _UNITS[answers[name][0].unit]
+        of_device = sought[name]
         if np.isfinite(builds[name]):
-            panel.axvline(factor * builds[name], color=BUILD, linewidth=1.2, zorder=0)
-        dots.draw(panel, marks)
-        panel.set(xlabel=f"{'length' if unit == 'µm' else 'force'} [{unit}]")
-    letter(axes[:, 0], list(rows))
-    marks = [mark for rows_of_device in rows.values() for row in rows_of_device.values() for mark in row]
-    entries = list(_entries({mark.color for mark in marks}, {mark.text_color for mark in marks}))
-    if not all(mark.filled for mark in marks):
-        style = {"linestyle": "", "marker": "o", "markerfacecolor": "white", "color": "0.3"}
-        entries.append(Line2D([], [], label="open: interpolated, or no safe size known", **style))
+            panel.axvline(builds[name] / of_device.scale, color=BUILD, linewidth=1.2, zorder=0)
+        dots.draw(panel, marks, column="")
+        _shade(panel, strictest[name] / of_device.scale, of_device.more_is_better)
+        panel.set_xlabel(f"{of_device.name} [{of_device.shown}], {_SAFER[of_device.more_is_better]} is safer")
+    letter(axes[:, 0], [_title(name, builds[name], strictest[name], sought[name]) for name in rows])
+    entries = list(_entries([mark for of_device in rows.values() for row in of_device.values() for mark in row]))
     legend_outside(figure_of_lives, (entries, [entry.get_label() for entry in entries]), "upper", 2)
     return figure_of_lives
 
 
-def _entries(colours, of_numbers):
-    """Yield entries of the legend: the questions whose colours are drawn, the size to build, and what is too short."""
+def _strictest(answers, others, build):
+    """Strictest size of all rows whose safe size is known, and of others [m, N]."""
+    ends = [unsafe_end(answer) for answer in answers if not _is_open(answer)]
+    sizes = [size for size in (*ends, *others, build) if np.isfinite(size)]
+    is_force = any(SOUGHT[answer.unit].more_is_better for answer in answers)
+    return (max if is_force else min)(sizes, default=np.nan)
+
+
+def _is_open(answer):
+    """Whether an answer is a length of which no safe value is known."""
+    return bool(np.isnan(answer.low)) and not SOUGHT[answer.unit].more_is_better
+
+
+def _shade(panel, strictest, more_is_better):
+    """Shade the sizes that a row does not allow, and leave room on their safe side."""
+    low, high = panel.get_xlim()
+    if np.isfinite(strictest):
+        room = _ROOM * (high - low)
+        panel.axvspan(*((low, strictest) if more_is_better else (strictest, high)), **_FORBIDDEN)
+        panel.set_xlim(low - room * (not more_is_better), high + room * more_is_better)
+
+
+def _title(name, build, strictest, sought):
+    """Title of a panel: the device, its size to build, and the strictest size of its rows if that reads differently."""
+    if not np.isfinite(build):
+        return name
+    text, strict = (safe_size(size, sought) for size in (build, strictest))
+    return f"{name}: build {text}" + (f",\nbut {strict} by its strictest row" if strict != text else "")
+
+
+def _entries(marks):
+    """Yield entries of the legend: the questions whose colours are drawn, sizes to build, and what marks are."""
     for question, colour in _COLOURS.items():
-        if colour in colours:
+        if colour in {mark.color for mark in marks}:
             yield Line2D([], [], color=colour, linewidth=4, label=_QUESTIONS[question])
     yield Line2D([], [], color=BUILD, label="size to build, all stated inside")
-    if _SHORT in of_numbers:
-        style = {"linestyle": "", "marker": "$12$", "markersize": 9, "color": _SHORT}
-        yield Line2D([], [], label="red: does not allow it, with errors of inputs", **style)
+    yield Patch(**_FORBIDDEN, label="sizes that a row does not allow")
+    yield _sign(marker="o", color="0.3", label="dot or bar: one cause, inputs exact")
+    if _DECIDES in {mark.marker for mark in marks}:
+        yield _sign(marker=_DECIDES, color=_SHORT, label="the same with errors of inputs")
+    for marker, label in {"o": "interpolated between airs", _BELOW: "below this; no safe length known"}.items():
+        if any(mark.marker == marker and not mark.filled for mark in marks):
+            yield _sign(marker=marker, markerfacecolor="white", color="0.3", label=label)
+
+
+def _sign(**style):
+    """Entry of the legend that is a marker."""
+    return Line2D([], [], linestyle="", markersize=4, **style)
 
 
 def _rows(dataset):
@@ -407,22 +457,29 @@ def _rows(dataset):
 def _marks(answers, build, unasked, widest):
     """One row for each answer from its lower to its upper bound, with both numbers, by its label.
 
-    Stricter sizes with the errors of the inputs, by the names of their rows, stand before bounds with exact inputs.
+    Stricter sizes with the errors of the inputs, by the names of their rows, have a mark of their own and stand before
+    bounds with exact inputs.
     """
     rows = {}
     for answer in answers:
         least, scale = answer.high if np.isnan(answer.low) else answer.low, SOUGHT[answer.unit].scale
         colour, low, high = _COLOURS[answer.question], least / scale, answer.high / scale
         text, sought = " to ".join(end for end in dict.fromkeys(_ends(answer)) if end != MISSING), SOUGHT[answer.unit]
-        if is_open := np.isnan(answer.low) and not sought.more_is_better:
+        if is_open := _is_open(answer):
             text = f"at most {text}"
-        if size := unasked.get(answer.name):
-            text = f"{bounding(size / scale, 3, up=sought.more_is_better)} (inputs exact: {text})"
-        is_red = answer.name in unasked or is_short(answer, build)
-        shade = _SHORT if is_red else _UNKNOWN if is_open else "black"
-        mark = dots.Mark(low, high, colour, text, filled=not is_open, text_color=shade)
-        rows[textwrap.fill(_label(answer), widest)] = [mark]
+        shade, marker = _SHORT if is_short(answer, build) else _EXACT, _BELOW if is_open else "o"
+        marks = [dots.Mark(low, high, colour, text, filled=not is_open, text_color=shade, marker=marker)]
+        if answer.name in unasked:
+            size = unasked[answer.name] / scale
+            marks = _with_errors(marks[0], size, bounding(size, 3, up=sought.more_is_better))
+        rows[textwrap.fill(_label(answer), widest)] = marks
     return rows
+
+
+def _with_errors(mark, size, number):
+    """Marks of a row with exact inputs and of its stricter size with their errors, with both numbers."""
+    text = f"{number}\nexact: {mark.text}"
+    return [replace(mark, text=""), dots.Mark(size, size, _SHORT, text, marker=_DECIDES, text_color=_SHORT)]
 
 
 def _mark_between(between, build, sought, widest):
