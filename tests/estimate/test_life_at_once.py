@@ -165,6 +165,20 @@ def test_the_density_of_the_beams_material_counts():
     assert estimated(device, **heavy).touching.shock == pytest.approx(of_silicon * 2330 / 19300, rel=1e-9)
 
 
+@pytest.mark.parametrize("device", [C1 | {"length_um": 200}, R1])
+def test_a_beam_of_another_solid_has_the_life_of_its_run(device):
+    sections = {"surfaces": {"Metal": {"like": "B2", "rms_nm": 3, "material": "Alloy"}}}
+    sections["materials"] = {"Alloy": {"young_modulus_GPa": 90, "density_kg_per_m3": 8000}}
+    sections["pairs"] = {"mine": {"beam": "Metal", "substrate": "Sub1", "gap_um": 20, "humidities": [0.67]}}
+    sections["run"] = {"pairs": ["mine"], "studies": []}
+    estimate, keys = (made(device | {"pair": "mine"}, **sections) for made in (estimated, keys_of))
+    rows = rows_by_name(beams.lengths_after_drying(keys, "Water", keys.liquids["Water"]))
+    assert estimate.dried["Water"].stands == pytest.approx(rows[f"{Name.COLLAPSE}_Water"].low, rel=1e-9)
+    shock = rows_by_name(beams.beam_touched(keys, estimate.touching.size))[Name.SHOCK].low
+    assert estimate.touching.shock == pytest.approx(shock, rel=4e-4)
+    assert estimated(device).touching.shock != pytest.approx(shock, rel=0.1), "the control: polysilicon"
+
+
 @pytest.mark.parametrize(
     ("device", "sections", "reason"),
     [
@@ -172,7 +186,7 @@ def test_the_density_of_the_beams_material_counts():
         (
             C1,
             {"liquids": {"Bad": {"surface_tension_mN_per_m": 20, "contact_angle_deg": 181}}},
-            "contact_angle_deg must be from 0 to 180, got 181",
+            "liquids.Bad.contact_angle_deg is 181, must be a number at least 0 and at most 180",
         ),
         (SPRING | {"mass_ng": -1}, {}, "mass_ng must be above 0"),
         (SPRING | {"electrode": {"area_um2": 0, "gap_um": 2}}, {}, "area_um2 must be above 0"),

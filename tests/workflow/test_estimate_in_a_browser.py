@@ -1,5 +1,6 @@
 """The page of the estimate in a browser: from a file, on a phone, with every slider at both ends."""
 
+import json
 import math
 
 import pytest
@@ -10,6 +11,9 @@ from stiction.command.main import main
 from stiction.estimate.page import page
 
 pytestmark = [pytest.mark.slow, pytest.mark.browser, pytest.mark.skipif(bool(missing()), reason=missing())]
+#: Sliders of solids and water.
+OF_POLYSILICON = {"modulus_GPa": 164, "temperature_K": 300, "angle_deg": 0, "opposite_deg": 0, "water_zJ": 97.5}
+OTHERS = {"modulus_GPa": 130, "temperature_K": 310, "angle_deg": 30, "opposite_deg": 10, "water_zJ": 75}
 SAID = "return document.getElementById('said').textContent"
 
 
@@ -74,11 +78,13 @@ def test_the_file_of_the_page_is_that_of_its_sliders(opened):
     ("known", "tension"), [("[]", 0), ("['hurst', 'corner_rad_per_um', 'kurtosis']", 21.7), ("[]", 72)]
 )
 @pytest.mark.parametrize("air", ["0.6", "dry"])
+@pytest.mark.parametrize("solids", [OF_POLYSILICON, OTHERS])
 def test_the_command_says_of_the_file_of_the_page_what_the_page_says(
-    opened, tmp_path, capsys, kind, known, tension, air
+    opened, tmp_path, capsys, kind, known, tension, air, solids
 ):
     moved = f"""
     document.getElementById('kind').value = '{kind}';
+    for (const [key, value] of Object.entries({json.dumps(solids)})) document.getElementById(key).value = value;
     const air = document.getElementById('humidity');
     air.value = '{air}' === 'dry' ? air.min : '{air}';
     document.getElementById('tension_mN_per_m').value = '{tension}';
@@ -90,6 +96,7 @@ def test_the_command_says_of_the_file_of_the_page_what_the_page_says(
     said, stuck, life, text = opened.run(moved)
     assert f"humidities: [{air}]" in text
     assert ("liquids" in text) == (tension > 0 and kind != "stopper")
+    assert ("materials:" in text) == (solids is OTHERS)
     (tmp_path / "mine.yaml").write_text(text, encoding="utf-8")
     assert main(["check", str(tmp_path / "mine.yaml"), "-d", str(tmp_path)]) == 0
     capsys.readouterr()

@@ -14,13 +14,12 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-from stiction.contact.air import is_humid
 from stiction.estimate.bridge import Bridge, Stretched
 from stiction.estimate.force import ForceRow, Stopper
 from stiction.estimate.length import Impossible, LengthRow, Lengths, NotLearnt, after, normal_score, score_at
 from stiction.estimate.life import BeamLife, Dried, StopperLife, Touching
 from stiction.estimate.question import Question
-from stiction.estimate.state import film
+from stiction.estimate.state import THINNEST, film
 from stiction.estimate.table import Surrogate
 from stiction.estimate.voltage import Driven
 
@@ -83,7 +82,7 @@ class Estimate:
     @property
     def is_fast(self) -> bool:
         """Whether a shock can separate it faster than its water evaporates, which the estimate does not know."""
-        return self.question.surroundings.shock > 0 and any(map(is_humid, self.question.humidities))
+        return self.question.surroundings.shock > 0 and not all(map(self.question.is_dry, self.question.humidities))
 
     @cached_property
     def touching(self) -> Touching:
@@ -109,7 +108,7 @@ def answer(
     rows = tuple(map(question.row, worst))
     decides = min(found, key=lambda air: found[air].length(normal_score(of_once[CHOSEN])))
     stuck = None if question.stated is None else _stuck(question, list(found.values()))
-    return Estimate(question, rows, stuck, decides, question.life(table["modulus"]))
+    return Estimate(question, rows, stuck, decides, question.life)
 
 
 def in_one_air(
@@ -212,17 +211,18 @@ def _in_air(question, air, table, tips, full):
     pairs = [beam + substrate]
     pairs += [question.members[0].get(name, beam) + question.members[1].get(name, substrate) for name in names]
     stated, *members = (_lengths(question, heights, air, table, tips, full) for heights in pairs)
-    closed = question.closed(table["modulus"])
-    errors = question.errors(table if is_humid(air) else table["dry"])
-    return LengthsInAir(errors, stated, tuple(members), question.averaged, closed)
+    errors = question.errors(table["dry"] if question.is_dry(air) else table)
+    return LengthsInAir(errors, stated, tuple(members), question.averaged, question.closed)
 
 
 def _lengths(question, heights, air, table, tips, full):
     """Lengths on the sum of two surfaces at one humidity."""
     try:
-        if not is_humid(air):
+        if question.is_dry(air):
             return question.in_dry_air(heights, table)
-        water = film(air, table["temperature"], 2.0, table["water"])
+        water = film(air, question.temperature, question.solids.wetting)
+        if water.height < THINNEST:
+            raise NotLearnt("the film of water is too thin to be a liquid: state a higher humidity, or dry")
         return question.lengths(heights, water, table, tips, full)
     except (ArithmeticError, ValueError) as impossible:  # such as the logarithm of a negative number
         raise Impossible("its numbers contradict each other") from impossible

@@ -14,20 +14,16 @@ the upper end that a run applies.
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
-from stiction.config.units import to_si
-from stiction.constants import HAMAKER_CONSTANT, MOLECULAR_DISTANCE
-from stiction.contact.air import DRY
-from stiction.estimate.length import OF_FORCES, SCORES, Lengths, NotLearnt, falling, known_at
+from stiction.constants import MOLECULAR_DISTANCE
+from stiction.estimate.length import OF_FORCES, SCORES, Lengths, falling, known_at
 from stiction.estimate.state import curvature
 from stiction.estimate.statistics import Heights
 from stiction.estimate.table import Surrogate
 
-#: Hamaker constant of polysilicon through dry air [J].
-POLYSILICON = HAMAKER_CONSTANT[DRY]
 #: Distance D₀ of solids at rest [m]: `stiction.contact.vanderwaals.DugdaleAttraction`.
 AT_REST = (2 / 15) ** (1 / 6) * MOLECULAR_DISTANCE
 #: Names of the coordinates, for messages: of both, of a beam and of a stopper.
@@ -53,7 +49,7 @@ def work_of(constant: float) -> float:
 
     Examples
     --------
-    >>> round(work_of(POLYSILICON), 3)
+    >>> round(work_of(18.65e-20), 3)  # polysilicon
     0.166
     """
     return constant / (16 * math.pi * AT_REST**2)
@@ -170,29 +166,3 @@ def reciprocals(patch: DryPatch, forces: Surrogate, full: Surrogate) -> Lengths:
 def processes(part: Mapping[str, Any], *names: str) -> tuple[Surrogate, ...]:
     """Processes of a part of the table by name."""
     return tuple(Surrogate(**part[name]) for name in names)
-
-
-#: Keys of a material that the estimate knows.
-_OF_MATERIALS = ("hamaker_constant_zJ", "density_kg_per_m3")
-
-
-def constant_of(surfaces: Sequence[Mapping[str, Any]], materials: Mapping[str, Any]) -> float:
-    """Hamaker constant of the solids of two surfaces in dry air, `stiction.contact.vanderwaals.combined` [J].
-
-    Raises
-    ------
-    NotLearnt
-        If a material differs from polysilicon in more.
-    """
-    return math.prod(_of_material(surface, materials) for surface in surfaces) ** 0.5
-
-
-def _of_material(surface, materials):
-    """Hamaker constant of two solids like that of a surface [J]."""
-    if "material" not in surface:
-        return POLYSILICON
-    stated = materials.get(surface["material"])
-    if stated is None or (others := [key for key in stated if key not in _OF_MATERIALS]):
-        what = surface["material"] if stated is None else f"{others[0]} of {surface['material']}"
-        raise NotLearnt(f"{what} was not learnt, of materials the Hamaker constant in dry air alone")
-    return to_si(stated["hamaker_constant_zJ"][DRY], "zJ") if "hamaker_constant_zJ" in stated else POLYSILICON

@@ -25,9 +25,30 @@ function added(one, other) {
 }
 
 // state
+const REFERENCE = 300, THINNEST = 3 * 2.8e-10;
+function surfaceTension(temperature) {
+  const tau = 1 - temperature / 647.096;
+  return 0.2358 * tau ** 1.256 * (1 - 0.625 * tau);
+}
+function density(temperature) {
+  const polynomial = (factors) => factors.reduceRight((total, factor) => factor + total * (temperature - 273.15), 0);
+  return polynomial([999.83952, 16.945176, -7.9870401e-3, -46.170461e-6, 105.56302e-9, -280.54253e-12]) / polynomial([1, 16.879850e-3]);
+}
 function film(humidity, temperature, wetting, [tension, volume]) {
-  const energy = tension * wetting;
-  return {height: energy * volume / (-GAS * temperature * Math.log(humidity)), energy};
+  const energy = tension * surfaceTension(temperature) / surfaceTension(REFERENCE) * wetting;
+  const height = energy * volume * density(REFERENCE) / density(temperature) / (-GAS * temperature * Math.log(humidity));
+  if (height < THINNEST) throw new NotLearnt("the film of water is too thin to be a liquid: state a higher humidity, or dry");
+  return {height, energy};
+}
+
+// solids
+const POLYSILICON = {modulus: 164e9, beamModulus: 164e9, throughWater: 9.75e-20, inDryAir: 1.865e-19, wetting: 2}, ROUNDING = 1e-9;
+const attractionOf = (solids, {energy}, [tension]) => solids.throughWater / POLYSILICON.throughWater * (POLYSILICON.wetting * tension / energy);
+function ofSolids(values, state, place, {process, names}, power = 1) {
+  const by = Math.log(state.attraction);
+  if (!by) return values;
+  const byOne = known(process, [...place, by], [...names, "attraction of the solids beside that of the water (from Hamaker constant and contact angles)"]);
+  return {...values, ...Object.fromEntries(["at_0", "at_1", "at_2"].map((name) => [name, values[name] + power * by * byOne[name]]))};
 }
 const curvature = ({moments: [, second, fourth]}) => Math.sqrt(fourth / second);
 const tensionOf = ({height, energy}) => energy / height;
@@ -75,7 +96,8 @@ function falling(values, shift) {
   return {logarithms: [first, second, third], slope: Math.max(LEAST, values.slope)};
 }
 function onSummits(state, gap, table) {
-  return falling(known(table.tips, coordinates(state), table.coordinates), Math.log(1.5 * gap / floodedSlope(state)));
+  const place = coordinates(state), names = table.coordinates, learnt = {process: table.attraction, names};
+  return falling(ofSolids(known(table.tips, place, names), state, place, learnt), Math.log(1.5 * gap / floodedSlope(state)));
 }
 function lengthAt({logarithms: [first, second, third], slope}, score) {
   const [, b, c] = SCORES;
@@ -100,9 +122,10 @@ function lengths(state, gap, table) {
 }
 
 // force: its reciprocal stands for a length
-function reciprocals(patch, {forces, full, coordinates: names}) {
+function reciprocals(patch, {forces, full, attraction, coordinates: names}) {
   const place = ofPatch(patch), {ratio, power} = known(full, place, names);
-  return changedBy(falling(known(forces, place, names), -Math.log(tensionOf(patch.film) * patch.area)), ratio, Math.max(1, power));
+  const values = ofSolids(known(forces, place, names), patch, place, {process: attraction, names});
+  return changedBy(falling(values, -Math.log(tensionOf(patch.film) * patch.area)), ratio, Math.max(1, power));
 }
 function changedBy({logarithms, slope}, ratio, power) {
   const [median, , last] = logarithms, scatter = (median - last) / 2;
@@ -111,7 +134,7 @@ function changedBy({logarithms, slope}, ratio, power) {
 }
 
 // dry air
-const AT_REST = (2 / 15) ** (1 / 6) * 2.09e-10, POLYSILICON = 1.865e-19;
+const AT_REST = (2 / 15) ** (1 / 6) * 2.09e-10;
 const workOf = (constant) => constant / (16 * Math.PI * AT_REST ** 2), slopeOf = ({rms, moments}) => rms * Math.sqrt(moments[1]);
 function ofDryContact({heights, constant, modulus}) {
   const [low, second, fourth] = heights.moments;
@@ -144,15 +167,16 @@ function dryReciprocals(patch, {forces, full, coordinates: names}) {
   const scatter = (found.logarithms[0] - found.logarithms[2]) / 2;
   return scattered(found, power, -change.ratio - (1 - power ** 2) * scatter ** 2 / 2);
 }
-function ofStopper({sides, force, constant = POLYSILICON}, {modulus, stoppers, dry}) {
-  const [one, other] = sides;
+function ofStopper({sides, force, solids = POLYSILICON}, {water: ofWater, stoppers, dry}) {
+  const [one, other] = sides, {modulus} = solids;
   const areaOf = ({sides: [low, high]}) => {
     if (!sides.every((side) => low * 1e-6 <= side && side <= high * 1e-6)) throw new NotLearnt(`sides of a stopper must be from ${low} to ${high} µm`);
     return one * other;
   };
   return {
-    lengths: (heights, water) => reciprocals({heights, film: water, area: areaOf(stoppers), modulus}, stoppers),
-    inDryAir: (heights) => dryReciprocals({heights, constant, area: areaOf(dry.stoppers), modulus}, dry.stoppers),
+    lengths: (heights, water) =>
+      reciprocals({heights, film: water, area: areaOf(stoppers), modulus, attraction: attractionOf(solids, water, ofWater)}, stoppers),
+    inDryAir: (heights) => dryReciprocals({heights, constant: solids.inDryAir, area: areaOf(dry.stoppers), modulus}, dry.stoppers),
     closed: drivenBy(0), errors: (part) => part.stoppers, stated: force && 1 / force,
     row: ({length, intervals}) => ({size: 1 / length, intervals: Object.fromEntries(Object.entries(intervals).map(([key, [low, high]]) => [key, [1 / high, 1 / low]]))}),
   };
@@ -178,17 +202,23 @@ function stretchedBy(stress, thickness, modulus) {
 function floodedLength({film, thickness, gap, modulus}) {
   return (768 * (modulus * thickness ** 3) ** 2 * gap ** 3 / (film.energy ** 2 / film.height)) ** 0.125;
 }
-function ofMiddle(state, {decay}) {
-  const contact = 8 * state.modulus * state.thickness ** 3 * state.gap / (floodedLength(state) ** 3 * tensionOf(state.film));
-  return [...ofPatch({...state, area: state.width * contact}), Math.log(state.gap / state.film.height), decay * contact];
+function contactOf(state) {
+  return 8 * state.modulus * state.thickness ** 3 * state.gap / (floodedLength(state) ** 3 * tensionOf(state.film));
 }
-function lengthsOfBridge(state, closed, {middle, full, coordinates: names}) {
+const middleOf = (state) => ({...state, area: state.width * contactOf(state), modulus: state.inContact});
+function ofMiddle(state, {decay}) {
+  const contact = contactOf(state);
+  return [...ofPatch(middleOf(state)), Math.log(state.gap / state.film.height), decay * contact];
+}
+function lengthsOfBridge(state, closed, {middle, full, coordinates: names}, stoppers) {
   const place = ofMiddle(state, closed), {shift, power} = known(full, place, names);
-  const {logarithms, slope} = falling(known(middle, place, names), Math.log(floodedLength(state))), [median] = logarithms;
+  const learnt = {process: stoppers.attraction, names: stoppers.coordinates};
+  const values = ofSolids(known(middle, place, names), state, ofPatch(middleOf(state)), learnt, 1 / 4);
+  const {logarithms, slope} = falling(values, Math.log(floodedLength(state))), [median] = logarithms;
   return {logarithms: logarithms.map((each) => median + shift + power * (each - median)), slope: power * slope};
 }
-function ofBridge({thickness, gap, width, stress, length}, {modulus, bridges}) {
-  const closed = stretchedBy(stress, thickness, modulus);
+function ofBridge({thickness, gap, width, stress, length, solids = POLYSILICON}, {water: ofWater, bridges, stoppers}) {
+  const modulus = solids.beamModulus, closed = stretchedBy(stress, thickness, modulus);
   return {
     lengths: (heights, water) => {
       const sizes = {thickness, gap, width, stress};
@@ -196,17 +226,18 @@ function ofBridge({thickness, gap, width, stress, length}, {modulus, bridges}) {
         const outside = !(low * UNITS[unit] <= sizes[name] && sizes[name] <= high * UNITS[unit]), symbol = unit.replace("u", "µ");
         if (outside) throw new NotLearnt(`the ${name} of a bridge must be from ${low} to ${high} ${symbol}`);
       }
-      return lengthsOfBridge({heights, film: water, thickness, gap, width, modulus}, closed, bridges);
+      const attraction = attractionOf(solids, water, ofWater);
+      return lengthsOfBridge({heights, film: water, thickness, gap, width, modulus, inContact: solids.modulus, attraction}, closed, bridges, stoppers);
     },
     inDryAir: () => { throw new NotLearnt("a bridge was not learnt in dry air"); },
     closed, errors: (part) => part.bridges, stated: length, row: ({length, intervals}) => ({size: length, intervals}),
   };
 }
-function ofCantilever({thickness, gap, width, length, added, constant = POLYSILICON}, table) {
-  const stiffness = table.modulus * thickness ** 3 / gap ** 2;
+function ofCantilever({thickness, gap, width, length, added, solids = POLYSILICON}, table) {
+  const stiffness = solids.beamModulus * thickness ** 3 / gap ** 2, {modulus} = solids;
   return {
-    lengths: (heights, water) => lengths({heights, film: water, stiffness, width, modulus: table.modulus}, gap, table),
-    inDryAir: (heights) => dryLengths({heights, constant, stiffness, width, modulus: table.modulus}, gap, table.dry),
+    lengths: (heights, water) => lengths({heights, film: water, stiffness, width, modulus, attraction: attractionOf(solids, water, table.water)}, gap, table),
+    inDryAir: (heights) => dryLengths({heights, constant: solids.inDryAir, stiffness, width, modulus}, gap, table.dry),
     closed: drivenBy(8 * (added || 0) / (3 * stiffness * gap ** 4)), errors: (part) => part, stated: length,
     row: ({length, intervals}) => {
       if (length <= Math.max(thickness, gap)) throw new NotLearnt("it sticks even at a length below its gap or thickness: change voltage or dielectric");
@@ -330,8 +361,8 @@ function halfSineShock(beam, length) {
   const overshoot = clamps === 1 ? OF_CANTILEVER : sum(modes) / byUnit;
   return modulus * thickness ** 2 * gap / (12 * DENSITY * length ** 4 * byUnit) / (HALF_SINE * overshoot);
 }
-function lifeOf({stress, thickness, gap, width, length, liquid}, {modulus}) {
-  const beam = {clamps: stress === undefined ? 1 : 2, stress, thickness, gap, width, modulus};
+function lifeOf({stress, thickness, gap, width, length, liquid, solids = POLYSILICON}) {
+  const beam = {clamps: stress === undefined ? 1 : 2, stress, thickness, gap, width, modulus: solids.beamModulus};
   const dried = liquid ? [standingEach, standing, released].map((of) => of(beam, liquid)) : null;
   return {dried, shock: halfSineShock(beam, length)};
 }
@@ -388,9 +419,11 @@ function centre(one, score) {
 function answer(question, table) {
   const kind = question.sides ? ofStopper : "stress" in question ? ofBridge : ofCantilever;
   const {lengths, inDryAir, closed, errors, stated, row} = kind(question, table);
+  const {wetting} = question.solids || POLYSILICON, temperature = question.temperature || REFERENCE;
   const airs = question.humidities.map((air) => {
-    const of = air > 0 ? (each) => lengths(each, film(air, table.temperature, 2, table.water)) : inDryAir;
-    return {stated: of(question.stated), members: question.members.map(of), errors: errors(air > 0 ? table : table.dry)};
+    const isHumid = air > 0 && wetting > ROUNDING;
+    const of = isHumid ? (each) => lengths(each, film(air, temperature, wetting, table.water)) : inDryAir;
+    return {stated: of(question.stated), members: question.members.map(of), errors: errors(isHumid ? table : table.dry)};
   });
   const once = (p) => -Math.expm1(Math.log1p(-p) / question.touchdowns);
   const rows = FRACTIONS.map((fraction) => {
@@ -402,7 +435,7 @@ function answer(question, table) {
     const length = (one) => Math.exp(logarithmOf(one, score, question.averaged));
     return {fraction, ...row({length: closed.length(Math.min(...airs.map(length))), intervals: ends})};
   });
-  return {rows, stuck: stated ? stuck(question, airs, closed.bare(stated)) : null, life: question.sides ? null : lifeOf(question, table)};
+  return {rows, stuck: stated ? stuck(question, airs, closed.bare(stated)) : null, life: question.sides ? null : lifeOf(question)};
 }
 const logarithmOf = (one, score, averaged) => averaged ? centre(one, score)[0] : Math.log(lengthAt(one.stated, score));
 function endsOf(one, score, confidence) {

@@ -25,7 +25,7 @@ def states_of(point: Point, numbers: Mapping[str, Any], modulus: float) -> list[
     heights, width = of_pair(point.sides), to_si(point.width, "um")
     films = [Film(height, 2 * WATER_SURFACE_ENERGY * wetting) for height, wetting in numbers["airs"]]
     return [
-        MiddleState(heights, film, thickness, gap, width, stress, modulus)
+        MiddleState(heights, film, thickness, gap, width, stress, modulus, modulus)
         for film, (thickness, gap, stress) in zip(films, numbers["sizes"].tolist(), strict=True)
     ]
 

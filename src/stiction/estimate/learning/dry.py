@@ -20,8 +20,7 @@ from stiction.config.reading import paper
 from stiction.config.units import from_si, in_si, to_si
 from stiction.constants import HAMAKER_CONSTANT
 from stiction.contact.air import DRY, DRY_AIR
-from stiction.contact.correction import NONE, Correction, ElasticChange, TipChanges
-from stiction.devices.arcs import longest_free, tip_slope
+from stiction.contact.correction import ElasticChange, TipChanges
 from stiction.estimate.learning import training
 from stiction.estimate.learning.design import Point, SurfaceLaw
 from stiction.estimate.learning.training import (
@@ -33,10 +32,11 @@ from stiction.estimate.learning.training import (
     main,
     surfaces_of,
     water_of,
+    with_materials,
 )
 from stiction.plan.plan import Plan
 from stiction.plan.stage import At
-from stiction.stages.contact import contact, curves, full_contact, tips_in_full_contact
+from stiction.stages.contact import contact, full_contact, tips_in_full_contact
 from stiction.stages.contact.changes.patches import TIPS
 from stiction.stages.contact.pairs import Settings
 from stiction.stages.devices.contact_names import patch_of_tips
@@ -47,8 +47,6 @@ from stiction.streams import stream
 FOLDER = "dry"
 #: Least and largest Hamaker constant of two solids in dry air [zJ], about half and twice that of polysilicon.
 CONSTANTS = (90.0, 380.0)
-#: Name of the material of both surfaces.
-_MATERIAL = "M"
 #: Width of strips in full contact [m], as in humid air.
 _NARROW = to_si(12, "um")
 
@@ -108,11 +106,8 @@ def base() -> dict[str, Any]:
 
 def with_constant(plan: Plan, constant: float) -> Plan:
     """Plan of a point with a Hamaker constant of both solids [J]."""
-    surfaces = {side: plan.config["surfaces"][side] | {"material": _MATERIAL} for side in "ST"}
     zj = {medium: round(from_si(constant, "zJ"), 4) for medium in HAMAKER_CONSTANT}
-    others = {name: entry for name, entry in plan.config["surfaces"].items() if name not in surfaces}
-    material = {"materials": {_MATERIAL: {"hamaker_constant_zJ": zj}}}
-    return Plan(plan.config | {"surfaces": others | surfaces} | material)
+    return with_materials(plan, *[{"hamaker_constant_zJ": zj}] * 2)
 
 
 def drawn(plan: Plan, name: str, number: int) -> TrainingTips:
@@ -127,11 +122,7 @@ def drawn(plan: Plan, name: str, number: int) -> TrainingTips:
 
 def slopes_of(tips: TrainingTips, changes: TipChanges | None = None) -> np.ndarray:
     """Slopes up to which tips stick in dry air, by stiffness and tip [-]."""
-    dry = DRY_AIR.humidity
-    change = None if changes is None else Correction(np.array([dry]), NONE, NONE, changes)
-    at, forces = curves.tip_forces(tips.contact, dry, replace(tips.water, correction=change))
-    beams = [replace(tips.device, gap=tips.device.gap / factor**0.5).beam for factor in FACTORS]
-    return np.array([tip_slope(longest_free(at, forces, beam), beam.gap) for beam in beams])
+    return tips.slopes_in(DRY_AIR.humidity, tips.water, changes)
 
 
 def full_contact_of(plan: Plan, name: str, number: int) -> dict[str, np.ndarray]:

@@ -19,6 +19,9 @@ from stiction.estimate.learning import dry_rows
 from stiction.estimate.learning.design import SurfaceLaw
 from stiction.estimate.learning.dry import CONSTANTS, DryEffort
 from stiction.estimate.learning.errors import coverage, noise_of, scores, tested, tested_bridges, tested_forces
+from stiction.estimate.learning.other_solids import rows as of_solids
+from stiction.estimate.learning.other_solids.points import RANGES, TEMPERATURES
+from stiction.estimate.learning.other_solids.points import SETS as OTHER_SOLIDS
 from stiction.estimate.length import NotLearnt
 from stiction.estimate.question import questions
 from stiction.estimate.table import Surrogate, content, known
@@ -39,9 +42,9 @@ SETS = {
 _HEAD = "| surfaces | number | refused | mean [%] | rms [%] | largest [%] | half [%] | inside 90 % | inside 95 % |"
 #: Words before both tables of drawn surfaces.
 _OF_LENGTHS = (
-    "`stiction estimate` knows cantilevers, bridges and stoppers of polysilicon, in humid air at 300 K and, without "
-    "bridges, in dry air, and refuses all else. Below are lengths for 1 in 1000 beside those of drawn surfaces that it "
-    "has not learnt, with tips changed by full contact as in a run, on strips of at most 12 µm. The error is the "
+    "`stiction estimate` knows cantilevers, bridges and stoppers in humid air and, without bridges, in dry air, and "
+    "refuses all else. Below are lengths for 1 in 1000, of polysilicon at 300 K, beside those of drawn surfaces that "
+    "it has not learnt, with tips changed by full contact as in a run, on strips of at most 12 µm. The error is the "
     "logarithm of the latter over the estimate, negative on the unsafe side. Half: median of half of the interval of "
     "90 %. In brackets: 95 % range of the share inside. Drying, shock and pull-in are closed forms of "
     "[the life](../life.md). Where water condenses, the estimate of a device with `shock_g` leaves the size to a run."
@@ -57,6 +60,11 @@ _OF_FORCES = (
 _IN_DRY_AIR = (
     "Lengths in dry air, at Hamaker constants of {:g} to {:g} zJ, beside tips changed by {} strips in full contact at "
     "each slope, with the error that a run would reach:"
+)
+_OF_SOLIDS = (
+    "{} of other solids, with moduli of {:g} to {:g} GPa, Hamaker constants through water of {:g} to {:g} zJ and "
+    "contact angles of {:g} to {:g}° on either side, at {:g} to {:g} K. None of them decides. In the control, solids "
+    "attract each other beside the water as polysilicon does:"
 )
 _FORCES_IN_DRY_AIR = "Forces in dry air, beside patches changed by {} strips of 3 µm in full contact:"
 
@@ -78,7 +86,31 @@ def lines(folder: Path) -> Iterator[str]:
             if found := list(test(folder, name, *learnt)):
                 yield _row(of_set, found, errors)
         yield ""
+    yield from _of_other_solids(folder, table)
     yield from _of_noise(folder, table["tested_score"])
+
+
+def _of_other_solids(folder, table):
+    """Lines of the tables of other solids."""
+    ranges = [end for name in ("modulus", "hamaker", "angle") for end in RANGES[name]]
+    for words, test, errors, names in (
+        ("Lengths", of_solids.tested, table, ("tips", "full", "attraction")),
+        ("Forces", of_solids.tested_forces, table["stoppers"], ("forces", "full", "attraction")),
+    ):
+        yield from (
+            _OF_SOLIDS.format(words, *ranges, *TEMPERATURES),
+            "",
+            _HEAD,
+            "|---|---|---|---|---|---|---|---|---|",
+        )
+        learnt = [Surrogate(**errors[name]) for name in names]
+        for law, of_law in ((SurfaceLaw.TYPICAL, "like a typical surface"), (SurfaceLaw.ANY, "any surface")):
+            for of_set, processes in ((of_law, learnt), (f"{of_law}, control", learnt[:-1])):
+                sets = [name for name in OTHER_SOLIDS if name.endswith(law)]
+                numbers = table["modulus"], errors["tested_score"], lambda _, of=processes: of
+                if found := [one for name in sets for one in test(folder, name, *numbers)]:
+                    yield _row(of_set, found, errors)
+        yield ""
 
 
 def _of_noise(folder, score):
