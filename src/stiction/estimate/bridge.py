@@ -20,10 +20,10 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from stiction.config.units import to_si
-from stiction.estimate.beams import SlenderBeam
-from stiction.estimate.bending import end_stiffness
+from stiction.estimate.closed.beams import SlenderBeam
+from stiction.estimate.closed.bending import end_stiffness
+from stiction.estimate.closed.life import BeamLife, Surroundings
 from stiction.estimate.length import LengthRow, Lengths, NotLearnt, falling, known_at, most_after
-from stiction.estimate.life import BeamLife, Surroundings
 from stiction.estimate.state import OF_PATCHES, Film, PatchState
 from stiction.estimate.statistics import Heights
 from stiction.estimate.table import Surrogate
