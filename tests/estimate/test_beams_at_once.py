@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from stiction.beam.cantilever import Beam
-from stiction.estimate import bending
-from stiction.estimate.beams import HALF_SINE, DryingLiquid, SlenderBeam
+from stiction.estimate.closed import bending
+from stiction.estimate.closed.beams import HALF_SINE, DryingLiquid, SlenderBeam
 from stiction.life import drying, touch
 from stiction.life.bending import Bent
 

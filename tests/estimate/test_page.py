@@ -11,11 +11,11 @@ import pytest
 
 import stiction.estimate.table as table_of_estimate
 from stiction.estimate.answer import CONFIDENCES, answer
-from stiction.estimate.beams import DryingLiquid
 from stiction.estimate.bridge import Bridge
+from stiction.estimate.closed.beams import DryingLiquid
+from stiction.estimate.closed.life import Surroundings
 from stiction.estimate.force import Stopper
 from stiction.estimate.length import NotLearnt
-from stiction.estimate.life import Surroundings
 from stiction.estimate.question import Question, surface
 from stiction.estimate.solids import SolidPair
 

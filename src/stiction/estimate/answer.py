@@ -15,9 +15,9 @@ from functools import cached_property
 from typing import Any
 
 from stiction.estimate.bridge import Bridge, Stretched
+from stiction.estimate.closed.life import BeamLife, Dried, StopperLife, Touching
 from stiction.estimate.force import ForceRow, Stopper
 from stiction.estimate.length import Impossible, LengthRow, Lengths, NotLearnt, after, normal_score, score_at
-from stiction.estimate.life import BeamLife, Dried, StopperLife, Touching
 from stiction.estimate.question import Question
 from stiction.estimate.state import THINNEST, film
 from stiction.estimate.table import Surrogate

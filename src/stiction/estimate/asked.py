@@ -5,8 +5,8 @@ from typing import ClassVar
 
 from stiction.constants import REFERENCE_TEMPERATURE
 from stiction.contact.air import is_humid
+from stiction.estimate.closed.life import Surroundings
 from stiction.estimate.length import most_after
-from stiction.estimate.life import Surroundings
 from stiction.estimate.solids import SolidPair
 from stiction.estimate.statistics import Heights
 

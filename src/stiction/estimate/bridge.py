@@ -21,10 +21,10 @@ from typing import Any
 
 from stiction.config.units import to_si
 from stiction.estimate.asked import Asked
-from stiction.estimate.beams import SlenderBeam
-from stiction.estimate.bending import end_stiffness
+from stiction.estimate.closed.beams import SlenderBeam
+from stiction.estimate.closed.bending import end_stiffness
+from stiction.estimate.closed.life import BeamLife
 from stiction.estimate.length import LengthRow, Lengths, NotLearnt, falling, known_at, of_solids
-from stiction.estimate.life import BeamLife
 from stiction.estimate.state import OF_PATCHES, Film, PatchState
 from stiction.estimate.statistics import Heights
 from stiction.estimate.table import Surrogate

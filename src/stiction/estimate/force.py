@@ -16,8 +16,8 @@ from typing import Any, ClassVar
 from stiction.config.units import to_si
 from stiction.estimate import dry
 from stiction.estimate.asked import Asked
+from stiction.estimate.closed.life import StopperLife
 from stiction.estimate.length import LengthRow, Lengths, NotLearnt, falling, known_at, of_solids
-from stiction.estimate.life import StopperLife
 from stiction.estimate.state import OF_PATCHES, Film, PatchState
 from stiction.estimate.statistics import Heights
 from stiction.estimate.table import Surrogate

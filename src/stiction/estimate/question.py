@@ -11,11 +11,11 @@ from stiction.constants import HAMAKER_CONSTANT
 from stiction.contact.air import DRY, DRY_AIR, is_possible
 from stiction.estimate import dry
 from stiction.estimate.asked import Asked
-from stiction.estimate.beams import SlenderBeam
 from stiction.estimate.bridge import Bridge
+from stiction.estimate.closed.beams import SlenderBeam
+from stiction.estimate.closed.life import BeamLife, Surroundings
 from stiction.estimate.force import Stopper
 from stiction.estimate.length import Impossible, LengthRow, Lengths, NotLearnt, lengths
-from stiction.estimate.life import BeamLife, Surroundings
 from stiction.estimate.solids import SolidPair
 from stiction.estimate.state import Film, TipState, stiffness_of
 from stiction.estimate.statistics import Heights, moments_of, slope_of

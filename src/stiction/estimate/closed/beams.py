@@ -17,7 +17,16 @@ import math
 from dataclasses import dataclass
 
 from stiction.constants import VACUUM_PERMITTIVITY
-from stiction.estimate.bending import AT_REST, SLACK, BentBeam, GrowingLoad, end_stiffness, largest, root, settled
+from stiction.estimate.closed.bending import (
+    AT_REST,
+    SLACK,
+    BentBeam,
+    GrowingLoad,
+    end_stiffness,
+    largest,
+    root,
+    settled,
+)
 
 #: As of `stiction.life.touch`.
 HALF_SINE = 1.7685

@@ -10,8 +10,8 @@ from typing import Any
 
 from stiction.config.units import to_si
 from stiction.constants import DENSITY, VACUUM_PERMITTIVITY
-from stiction.estimate.beams import HALF_SINE, DryingLiquid, SlenderBeam
-from stiction.estimate.bending import largest
+from stiction.estimate.closed.beams import HALF_SINE, DryingLiquid, SlenderBeam
+from stiction.estimate.closed.bending import largest
 from stiction.estimate.voltage import potential_of
 
 #: Part of the gap of an electrode up to which a stopper is moved.
