@@ -129,14 +129,14 @@ def lengths(tip: DryTip, gap: float, tips: Surrogate, full: Surrogate) -> Length
     NotLearnt
         If the tip is beyond what was learnt.
     """
-    found = _on_summits(tip, gap, tips)
+    distribution = _on_summits(tip, gap, tips)
     power = 1.0
     for _ in range(2):
-        change = known_at(full, tip.at(1.5 * gap / found.at(SCORES[-1])).coordinates, tip.names)
-        power, scatter = max(1.0, change["power"]), OF_FORCES * found.fall
+        change = known_at(full, tip.at(1.5 * gap / distribution.at(SCORES[-1])).coordinates, tip.names)
+        power, scatter = max(1.0, change["power"]), OF_FORCES * distribution.fall
         factor = math.exp(change["ratio"] + (1 - power**2) * scatter**2 / 2)
-        found = _on_summits(replace(tip, stiffness=tip.stiffness / factor), gap, tips)
-    return scattered(found, power)
+        distribution = _on_summits(replace(tip, stiffness=tip.stiffness / factor), gap, tips)
+    return scattered(distribution, power)
 
 
 def _on_summits(tip, gap, tips):
@@ -144,10 +144,12 @@ def _on_summits(tip, gap, tips):
     return falling(known_at(tips, tip.coordinates, tip.names), math.log(1.5 * gap / tip.flat_slope))
 
 
-def scattered(found: Lengths, power: float, shift: float = 0.0) -> Lengths:
+def scattered(distribution: Lengths, power: float, shift: float = 0.0) -> Lengths:
     """Lengths whose logarithms scatter more by a power, around a shifted median."""
-    median = found.logarithms[0]
-    return Lengths(tuple(median + shift + power * (each - median) for each in found.logarithms), power * found.slope)
+    median = distribution.logarithms[0]
+    return Lengths(
+        tuple(median + shift + power * (each - median) for each in distribution.logarithms), power * distribution.slope
+    )
 
 
 def reciprocals(patch: DryPatch, forces: Surrogate, full: Surrogate) -> Lengths:
@@ -159,10 +161,10 @@ def reciprocals(patch: DryPatch, forces: Surrogate, full: Surrogate) -> Lengths:
         If the patch is beyond what was learnt.
     """
     change, values = (known_at(process, patch.coordinates, patch.names) for process in (full, forces))
-    found, power = falling(values, -math.log(patch.flat_force)), max(1.0, change["power"])
-    return scattered(found, power, -change["ratio"] - (1 - power**2) * found.fall**2 / 2)
+    distribution, power = falling(values, -math.log(patch.flat_force)), max(1.0, change["power"])
+    return scattered(distribution, power, -change["ratio"] - (1 - power**2) * distribution.fall**2 / 2)
 
 
-def processes(part: Mapping[str, Any], *names: str) -> tuple[Surrogate, ...]:
+def processes(section: Mapping[str, Any], *names: str) -> tuple[Surrogate, ...]:
     """Processes of a part of the table by name."""
-    return tuple(Surrogate(**part[name]) for name in names)
+    return tuple(Surrogate(**section[name]) for name in names)

@@ -77,11 +77,11 @@ def lengths(
     NotLearnt
         If the state is beyond what was learnt.
     """
-    found = _on_summits(state, gap, tips, attraction)
+    distribution = _on_summits(state, gap, tips, attraction)
     for _ in range(2 if full else 0):
-        changed = replace(state, stiffness=state.stiffness / change(state, found, gap, full))
-        found = _on_summits(changed, gap, tips, attraction)
-    return found
+        changed = replace(state, stiffness=state.stiffness / change(state, distribution, gap, full))
+        distribution = _on_summits(changed, gap, tips, attraction)
+    return distribution
 
 
 def _on_summits(state, gap, tips, attraction):
@@ -136,12 +136,12 @@ def known_at(process: Surrogate, coordinates: Sequence[float], names: Sequence[s
     return values.of
 
 
-def change(state: TipState, found: Lengths, gap: float, full: Surrogate) -> float:
+def change(state: TipState, distribution: Lengths, gap: float, full: Surrogate) -> float:
     """Factor of the attraction of tips by full contact, as a run applies it."""
-    slope = 1.5 * gap / found.at(SCORES[-1])
+    slope = 1.5 * gap / distribution.at(SCORES[-1])
     at_slope = replace(state, stiffness=13.5 * state.film.energy / slope**4)  # flooded flats hold up to this slope
     ratio = known_at(full, at_slope.coordinates, COORDINATES)["ratio"]
-    return most(math.exp(ratio), found.fall)
+    return most(math.exp(ratio), distribution.fall)
 
 
 def most(ratio: float, fall: float) -> float:

@@ -175,8 +175,8 @@ def surface(entry: Mapping[str, Any], library: Library) -> tuple[Heights, dict[s
     if "psd" in entry:
         numbers = _numbers(entry)
         left_open = [_WORDS[word] for word in entry.get("unknown", ())]
-        known = {key: value for key, value in numbers.items() if key not in left_open}
-        members = {name: _as(other, known, left_open) for name, other in library.items()} if left_open else {}
+        stated = {key: value for key, value in numbers.items() if key not in left_open}
+        members = {name: _as(other, stated, left_open) for name, other in library.items()} if left_open else {}
         return _statistics(numbers), members
     left_open = [key for key in _OPEN if key not in entry]
     members = {name: _as(other, entry, left_open) for name, other in library.items()} if left_open else {}
@@ -208,8 +208,8 @@ def _as(other, entry, left_open):
 def _numbers(entry):
     """Numbers of a surface in normal form, as files describe it."""
     psd = entry["published_psd"]
-    own = {key: entry[key] for key in ("rms_nm", *_OPEN[:2])} | {key: psd[key] for key in _OPEN[3:]}
-    return own | {"hurst": -slope_of(psd) / 2 - 1}
+    numbers = {key: entry[key] for key in ("rms_nm", *_OPEN[:2])} | {key: psd[key] for key in _OPEN[3:]}
+    return numbers | {"hurst": -slope_of(psd) / 2 - 1}
 
 
 def _statistics(numbers):
@@ -271,28 +271,33 @@ def questions(
 
     The table has the typical surfaces, and the pairs of the paper.
     """
-    found, devices = {}, content.get("devices", {})
+    by_device, devices = {}, content.get("devices", {})
     if "file" in devices:
         return {"Table": NotLearnt("devices of a table were not learnt")}
     for name, device in devices.items():
         try:
-            found[name] = _question(name, device, content, table)
+            by_device[name] = _question(name, device, content, table)
         except NotLearnt as reason:
-            found[name] = reason
+            by_device[name] = reason
         except (KeyError, TypeError, AttributeError, ArithmeticError, ValueError) as wrong:
-            found[name] = NotLearnt(f"its file is not complete, at {wrong}; stiction check says what is wrong")
-    return found
+            by_device[name] = NotLearnt(f"its file is not complete, at {wrong}; stiction check says what is wrong")
+    return by_device
 
 
 def _question(name, device, content, table):
     """Question of one device."""
-    others = [f"{part}.{key}" for part, keys in OF_SECTIONS.items() for key in content.get(part, {}) if key not in keys]
+    others = [
+        f"{section}.{key}"
+        for section, keys in OF_SECTIONS.items()
+        for key in content.get(section, {})
+        if key not in keys
+    ]
     others += [key for key in content if key not in (*OF_FILES, *OF_NAMES, *OF_SECTIONS)]
     if others := [key for key in others if key not in OF_DEFAULTS or content[key] != OF_DEFAULTS[key]]:
         raise NotLearnt(f"{others[0]} was not learnt")
-    known, of = _of_kind(device["kind"])
+    keys_known, make = _of_kind(device["kind"])
     left_out = tuple(key for key in LEFT_OUT if key in device)
-    if others := [key for key in device if key not in known + LEFT_OUT]:
+    if others := [key for key in device if key not in keys_known + LEFT_OUT]:
         raise NotLearnt(f"{others[0]} was not learnt")
     pair, library = (table["pairs"] | content.get("pairs", {}))[device["pair"]], table["library"]
     if others := [key for key in pair if key not in OF_PAIRS]:
@@ -307,7 +312,7 @@ def _question(name, device, content, table):
         refuse_beyond(entry, f"surfaces.{pair[side]}")
     sides = [surface(entry, library) for entry in entries]
     more = {"left_out": left_out, "solids": solids, "surroundings": surroundings} | temperature_of(content)
-    return of(name, device, sides, **more)
+    return make(name, device, sides, **more)
 
 
 def _refuse_life(device, content):

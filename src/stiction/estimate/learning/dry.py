@@ -64,9 +64,9 @@ class DryEffort(TrainingEffort):
 
 def _effort(name, points, stoppers, states, patches, strips):
     """Effort of a set, with the first points of a set in humid air."""
-    of = training.SETS[name]
-    tips = min(of.tips, _MOST)
-    return DryEffort(points, of.seed, of.law, tips, of.tips_by_width, states, 1, patches, strips, stoppers)
+    humid = training.SETS[name]
+    tips = min(humid.tips, _MOST)
+    return DryEffort(points, humid.seed, humid.law, tips, humid.tips_by_width, states, 1, patches, strips, stoppers)
 
 
 #: Sets of points by name, as in humid air.
@@ -116,8 +116,8 @@ def drawn(plan: Plan, name: str, number: int) -> TrainingTips:
     at = At(**{key: str(value) for key, value in patch_of_tips(plan, case)._asdict().items()})
     tips = effort.tips + round(effort.tips_by_width / to_si(plan.config["devices"][DEVICE]["width_um"], "um"))
     settings = replace(in_si(Settings, TIPS.settings(plan, at, tips)), seed=effort.seed)
-    found = contact.compute(surfaces_of(plan), f"estimate{number}", "NG", settings)
-    return TrainingTips(found, water_of(plan), in_si(DesignedBeam, section_of_beam(plan, DEVICE)))
+    dataset = contact.compute(surfaces_of(plan), f"estimate{number}", "NG", settings)
+    return TrainingTips(dataset, water_of(plan), in_si(DesignedBeam, section_of_beam(plan, DEVICE)))
 
 
 def slopes_of(tips: TrainingTips, changes: TipChanges | None = None) -> np.ndarray:
@@ -130,16 +130,16 @@ def full_contact_of(plan: Plan, name: str, number: int) -> dict[str, np.ndarray]
     stated = full_contact.settings_in_dry_air(plan, At(pair=PAIR)) | plan.devices.all_tips(PAIR)
     settings = in_si(tips_in_full_contact.Settings, stated | {"most": 0, "on_summits": 0})
     settings = replace(settings, strips=SETS[name].strips[0], seed=SETS[name].seed)
-    own = replace(settings, beam=replace(settings.beam, width=min(settings.beam.width, _NARROW)))
-    study = tips_in_full_contact.compute_for_devices(surfaces_of(plan), f"estimate{number}", own)
+    narrow = replace(settings, beam=replace(settings.beam, width=min(settings.beam.width, _NARROW)))
+    study = tips_in_full_contact.compute_for_devices(surfaces_of(plan), f"estimate{number}", narrow)
     full, summits = tips_in_full_contact.models(study)
     return {"slope": study.slope.values, "full": full[:, 0], "summits": summits[:, 0]}
 
 
 def changes_of(slope: np.ndarray, full: np.ndarray, summits: np.ndarray) -> TipChanges:
     """Changes of tips that a run applies in dry air, from slopes (s,) and attractions (n, s)."""
-    found = tip_ratios(full[:, None], summits[:, None])
-    return TipChanges(slope, ElasticChange(found.means, np.maximum(found.powers, 1), in_run(found.error, len(full))))
+    ratios = tip_ratios(full[:, None], summits[:, None])
+    return TipChanges(slope, ElasticChange(ratios.means, np.maximum(ratios.powers, 1), in_run(ratios.error, len(full))))
 
 
 def in_run(error: np.ndarray, strips: int) -> np.ndarray:
@@ -160,10 +160,10 @@ def computed(point: Point, name: str, valid: dict[str, Any]) -> dict[str, Any]:
     """Numbers of one point of a set."""
     plans = [with_constant(training.plan_of(point, valid), each) for each in constants(point, name)]
     tips = [drawn(plan, name, point.number) for plan in plans]
-    found = {"constants": constants(point, name), "slopes": np.array([slopes_of(each) for each in tips], np.float32)}
+    results = {"constants": constants(point, name), "slopes": np.array([slopes_of(each) for each in tips], np.float32)}
     of_full = full_contact_of(plans[0], name, point.number)
     changed = slopes_of(tips[0], changes_of(**of_full))[FACTORS.index(1.0)]
-    return found | of_full | {"changed": changed.astype(np.float32)}
+    return results | of_full | {"changed": changed.astype(np.float32)}
 
 
 def control() -> dict[str, list[float]]:

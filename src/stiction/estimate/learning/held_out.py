@@ -82,9 +82,9 @@ def lines(folder: Path) -> Iterator[str]:
         yield from (words, "", _HEAD, "|---|---|---|---|---|---|---|---|---|")
         processes = [Surrogate(**errors[name]) for name in (first, "full")]
         for name, of_set in SETS.items():
-            learnt = table["modulus"], errors["tested_score"], lambda _, of=processes: of
-            if found := list(test(folder, name, *learnt)):
-                yield _row(of_set, found, errors)
+            learnt = table["modulus"], errors["tested_score"], lambda _, learnt_processes=processes: learnt_processes
+            if surfaces := list(test(folder, name, *learnt)):
+                yield _row(of_set, surfaces, errors)
         yield ""
     yield from _of_other_solids(folder, table)
     yield from _of_noise(folder, table["tested_score"])
@@ -107,9 +107,13 @@ def _of_other_solids(folder, table):
         for law, of_law in ((SurfaceLaw.TYPICAL, "like a typical surface"), (SurfaceLaw.ANY, "any surface")):
             for of_set, processes in ((of_law, learnt), (f"{of_law}, control", learnt[:-1])):
                 sets = [name for name in OTHER_SOLIDS if name.endswith(law)]
-                numbers = table["modulus"], errors["tested_score"], lambda _, of=processes: of
-                if found := [one for name in sets for one in test(folder, name, *numbers)]:
-                    yield _row(of_set, found, errors)
+                numbers = (
+                    table["modulus"],
+                    errors["tested_score"],
+                    lambda _, learnt_processes=processes: learnt_processes,
+                )
+                if surfaces := [surface for name in sets for surface in test(folder, name, *numbers)]:
+                    yield _row(of_set, surfaces, errors)
         yield ""
 
 
@@ -132,7 +136,11 @@ _HALF = 1.645
 
 def of_runs(lengths: str, forces: str, devices: str) -> Iterator[str]:
     """Lines of the table beside runs, whose safe lengths and forces and devices are in files. They touch down once."""
-    asked = {name: one for name, one in questions(read(devices), content()).items() if not isinstance(one, NotLearnt)}
+    asked = {
+        name: question
+        for name, question in questions(read(devices), content()).items()
+        if not isinstance(question, NotLearnt)
+    }
     yield "Beside the run of [examples/devices.yaml](../../examples/devices.yaml): lengths by beam, tip or middle, and"
     yield "of stoppers the simulated limit with 95 % confidence, which is above the estimate of the run:"
     yield ""
@@ -163,8 +171,12 @@ def _read(path):
 def _beside(row, share, of_run, question):
     """Row of one length or force of a run."""
     once = replace(question, touchdowns=1, humidities=(float(row["relative_humidity"]),))
-    found = next(one for one in answer(once, *known()).rows if np.isclose(one.fraction, share))
-    shown, low, high = (f"{from_si(number, question.unit):.3g}" for number in (found.size, *found.intervals["90"]))
+    row_of_estimate = next(
+        estimated for estimated in answer(once, *known()).rows if np.isclose(estimated.fraction, share)
+    )
+    shown, low, high = (
+        f"{from_si(number, question.unit):.3g}" for number in (row_of_estimate.size, *row_of_estimate.intervals["90"])
+    )
     cells = [
         row["device"],
         row["relative_humidity"],
@@ -175,14 +187,14 @@ def _beside(row, share, of_run, question):
     return f"| {' | '.join([*cells, f'{low} to {high}'])} |"
 
 
-def _row(words, found, of_part):
+def _row(words, surfaces, of_part):
     """Row of one set, with the errors of a part of the table."""
-    known, rest, margins = [one for one in found if one.is_known], of_part["rest"], of_part["margins"]
-    errors = np.array([one.error for one in known])
-    halves = [margins["90"] * difficulty(one.slope, rest) for one in known]
+    answered, rest, margins = [surface for surface in surfaces if surface.is_known], of_part["rest"], of_part["margins"]
+    errors = np.array([surface.error for surface in answered])
+    halves = [margins["90"] * difficulty(surface.slope, rest) for surface in answered]
     numbers = [np.mean(errors), np.sqrt(np.mean(errors**2)), np.abs(errors).max(), np.median(halves)]
-    cells = [words, len(found), len(found) - len(known), *(f"{100 * number:.1f}" for number in numbers)]
-    cells += [_inside(scores(known, rest) <= margins[name]) for name in CONFIDENCES]
+    cells = [words, len(surfaces), len(surfaces) - len(answered), *(f"{100 * number:.1f}" for number in numbers)]
+    cells += [_inside(scores(answered, rest) <= margins[name]) for name in CONFIDENCES]
     return f"| {' | '.join(map(str, cells))} |"
 
 

@@ -88,14 +88,14 @@ def in_dry_air(folder: Path, modulus: float) -> dict[str, Any]:
     stoppers = {"sides": SIDES_OF_PATCHES, "coordinates": of_dry_air.OF_PATCHES}
     stoppers |= {"forces": forces.content, "full": ratios.content}
     stoppers |= errors_of(dry_rows.tested_forces, folder, modulus, forces, ratios)
-    own = {"sets": {name: vars(effort) for name, effort in dry.SETS.items()}, "tips": tips.content}
-    own |= {
+    section = {"sets": {name: vars(effort) for name, effort in dry.SETS.items()}, "tips": tips.content}
+    section |= {
         "coordinates": of_dry_air.OF_TIPS,
         "full": full.content,
         "stoppers": stoppers,
         "control": dry.control() | dry_patches.control(),
     }
-    return own | errors_of(dry_rows.tested, folder, modulus, tips, full)
+    return section | errors_of(dry_rows.tested, folder, modulus, tips, full)
 
 
 def attraction_of(rows: DesignRows, columns: Sequence[int]) -> dict[str, Any]:
@@ -107,24 +107,24 @@ def stoppers_of(folder: Path, modulus: float) -> dict[str, Any]:
     """Part of the table about stoppers."""
     forces = fitted(rows_of_patches(folder, "learn", modulus), "at_2", range(len(OF_PATCHES)))
     full = fitted(rows_of_ratios(folder, "learn", modulus), "ratio", OF_RATIO, 90)
-    own = {"sides": SIDES_OF_PATCHES, "coordinates": OF_PATCHES, "forces": forces.content, "full": full.content}
+    section = {"sides": SIDES_OF_PATCHES, "coordinates": OF_PATCHES, "forces": forces.content, "full": full.content}
     rows = of_solids.rows_of_patches(folder, modulus)
-    own |= {"attraction": attraction_of(rows, of_solids.OF_PATCHES_ATTRACTED)}
-    return own | errors_of(tested_forces, folder, modulus, forces, full)
+    section |= {"attraction": attraction_of(rows, of_solids.OF_PATCHES_ATTRACTED)}
+    return section | errors_of(tested_forces, folder, modulus, forces, full)
 
 
 def bridges_of(folder: Path, modulus: float) -> dict[str, Any]:
     """Part of the table about bridges."""
     middle = fitted(rows_of_middles(folder, "learn", modulus), "at_2", range(len(OF_BRIDGES)))
     full = fitted(rows_of_changes(folder, "learn", modulus), "shift", OF_RATIO, 90)
-    own = {
+    section = {
         "every": EVERY,
         "ranges": RANGES_OF_BRIDGES,
         "coordinates": OF_BRIDGES,
         "middle": middle.content,
         "full": full.content,
     }
-    return own | errors_of(tested_bridges, folder, modulus, middle, full)
+    return section | errors_of(tested_bridges, folder, modulus, middle, full)
 
 
 def _control_point():
@@ -171,8 +171,8 @@ def errors_of(test: Test, folder: Path, modulus: float, first: Fitted, full: Fit
     """Numbers of the table about the errors of two processes: on summits and in full contact."""
     of_rest = rest(test, folder, modulus, first, full)
     of_margins = margins(test, folder, modulus, of_rest, *(Surrogate(**each.content) for each in (first, full)))
-    own = {"tested_score": TESTED, "left_out": first.scatter | full.scatter}
-    return own | {"rest": of_rest, "margins": of_margins}
+    section = {"tested_score": TESTED, "left_out": first.scatter | full.scatter}
+    return section | {"rest": of_rest, "margins": of_margins}
 
 
 def rest(test: Test, folder: Path, modulus: float, first: Fitted, full: Fitted) -> float:
@@ -190,11 +190,11 @@ def margins(test: Test, folder: Path, modulus: float, of_rest: float, *processes
 
     The widest of those of each law, so that an interval holds for surfaces of either.
     """
-    found = [
+    by_law = [
         scores(list(test(folder, f"decide_{law}", modulus, TESTED, lambda _: processes)), of_rest)
         for law in (SurfaceLaw.TYPICAL, SurfaceLaw.ANY)
     ]
-    return {name: round(max(conformal(errors, int(name) / 100) for errors in found), 4) for name in CONFIDENCES}
+    return {name: round(max(conformal(errors, int(name) / 100) for errors in by_law), 4) for name in CONFIDENCES}
 
 
 if __name__ == "__main__":

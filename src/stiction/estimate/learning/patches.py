@@ -79,8 +79,8 @@ def forces_in(point: Point, plan: Plan, airs: Sequence[float], number: int, seed
     patch = patch_of(plan, Case(case_id(DEVICE, HUMIDITIES[0])))
     at = At(**{name: str(value) for name, value in patch._asdict().items()})
     settings = replace(in_si(Settings, GROUND.settings(plan, at, number)), seed=seed)
-    found, water = contact.compute(surfaces_of(plan), f"estimate{point.number}", "NG", settings), water_of(plan)
-    return np.array([curves.pull_offs(found, air, water) for air in airs])
+    dataset, water = contact.compute(surfaces_of(plan), f"estimate{point.number}", "NG", settings), water_of(plan)
+    return np.array([curves.pull_offs(dataset, air, water) for air in airs])
 
 
 def change_of(point: Point, plan: Plan, height: float, seed: int) -> dict[str, float]:
@@ -107,10 +107,10 @@ def computed(point: Point, name: str, valid: dict[str, Any]) -> dict[str, Any]:
     sides = sides_of(point, effort.seed, effort.law)
     plan, airs = plan_of(point, sides, valid), states(effort.states, point.number, effort.seed)
     forces = forces_of(point, plan, airs[:, 0], effort.patches, effort.seed)
-    found = {"airs": airs, "sides": np.array(sides), "forces": forces.astype(np.float32)}
+    results = {"airs": airs, "sides": np.array(sides), "forces": forces.astype(np.float32)}
     if point.number % effort.every == 0:
-        found |= change_of(point, plan, airs[0, 0], effort.seed)
-    return found
+        results |= change_of(point, plan, airs[0, 0], effort.seed)
+    return results
 
 
 if __name__ == "__main__":

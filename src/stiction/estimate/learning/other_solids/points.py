@@ -105,8 +105,8 @@ def computed_patches(point: Point, name: str, valid: dict[str, Any]) -> dict[str
     sides = patches.sides_of(point, effort.seed, effort.law)
     plan = with_solids(patches.plan_of(point, sides, valid), temperature, materials)
     forces = patches.forces_in(point, plan, [humidity], effort.patches, effort.seed)
-    found = {"humidity": np.array(humidity), "sides": np.array(sides), "forces": forces.astype(np.float32)}
-    return found | patches.change_in(point, plan, humidity, effort.seed)
+    results = {"humidity": np.array(humidity), "sides": np.array(sides), "forces": forces.astype(np.float32)}
+    return results | patches.change_in(point, plan, humidity, effort.seed)
 
 
 if __name__ == "__main__":

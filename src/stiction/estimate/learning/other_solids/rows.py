@@ -47,8 +47,8 @@ def _both(folder: Path, of_polysilicon: Path) -> Iterator[tuple[Point, dict[str,
 
 def _rows(entries):
     """Rows of the change of quantities by the logarithm of the attraction, from values over those of flats."""
-    surface, coordinates, changed, own, by = zip(*entries, strict=True)
-    pairs = [[of_tips(each) for each in both] for both in zip(changed, own, strict=True)]
+    surface, coordinates, changed, of_polysilicon, by = zip(*entries, strict=True)
+    pairs = [[of_tips(each) for each in both] for both in zip(changed, of_polysilicon, strict=True)]
     by = np.array(by)
     values = {name: np.array([more[name] - less[name] for more, less in pairs]) / by for name in NAMES[:3]}
     return DesignRows(np.column_stack([coordinates, by]), values, np.array(surface), 1 / np.abs(by))
@@ -58,10 +58,13 @@ def rows_of_tips(folder: Path, modulus: float) -> DesignRows:
     """Rows of all tips on summits at another attraction."""
     return _rows(
         (point.number, state.coordinates, *(slopes / state.flooded_slope for slopes in both), by)
-        for point, numbers, own in _both(folder, folder)
+        for point, numbers, of_polysilicon in _both(folder, folder)
         for by in [math.log(numbers["ratio"])]
         for states, *of_air in zip(
-            states_of(point, own["airs"][: attraction.AIRS], modulus), numbers["slopes"], own["slopes"], strict=False
+            states_of(point, of_polysilicon["airs"][: attraction.AIRS], modulus),
+            numbers["slopes"],
+            of_polysilicon["slopes"],
+            strict=False,
         )
         for state, *both in zip(states, *of_air, strict=True)
     )
@@ -71,9 +74,11 @@ def rows_of_patches(folder: Path, modulus: float) -> DesignRows:
     """Rows of all patches on summits at another attraction."""
     return _rows(
         (point.number, patch.coordinates, *(each.astype(float) for each in both), by)
-        for point, numbers, own in _both(folder, folder / patches.FOLDER)
+        for point, numbers, of_polysilicon in _both(folder, folder / patches.FOLDER)
         for by in [math.log(numbers["ratio"])]
-        for patch, *both in zip(patches_of(point, own, modulus), numbers["forces"], own["forces"], strict=False)
+        for patch, *both in zip(
+            patches_of(point, of_polysilicon, modulus), numbers["forces"], of_polysilicon["forces"], strict=False
+        )
     )
 
 
@@ -95,21 +100,21 @@ def _stored(folder: Path, name: str) -> Iterator[tuple[Point, Mapping[str, Any],
 
 def tested(folder: Path, name: str, _modulus: float, score: float, processes: Processes) -> Iterator[Tested]:
     """Lengths of a set of other solids, as `stiction.estimate.learning.errors.tested`."""
-    for point, numbers, own, water in _stored(folder / points.FOLDER, name):
+    for point, numbers, solids, water in _stored(folder / points.FOLDER, name):
         if np.isfinite(numbers["changed"]).all():
             sizes = point.stiffness, to_si(point.width, "um")
-            state = TipState(of_pair(point.sides), water, *sizes, own.modulus, own.attraction(water.energy))
+            state = TipState(of_pair(point.sides), water, *sizes, solids.modulus, solids.attraction(water.energy))
             true = lengths_of(of_tips(numbers["changed"]), math.log(1.5))
-            yield beside(point, true, score, lambda of=state, at=point: lengths(of, 1.0, *processes(at)))
+            yield beside(point, true, score, lambda state=state, at=point: lengths(state, 1.0, *processes(at)))
 
 
 def tested_forces(folder: Path, name: str, _modulus: float, score: float, processes: Processes) -> Iterator[Tested]:
     """Reciprocals of forces of a set of other solids, as `tested`."""
-    for point, numbers, own, water in _stored(folder / points.FOLDER / patches.FOLDER, name):
+    for point, numbers, solids, water in _stored(folder / points.FOLDER / patches.FOLDER, name):
         if np.isfinite(numbers["ratio"]):
             area = float(np.prod(to_si(numbers["sides"], "um")))
-            patch = PatchState(of_pair(point.sides), water, area, own.modulus, own.attraction(water.energy))
+            patch = PatchState(of_pair(point.sides), water, area, solids.modulus, solids.attraction(water.energy))
             pressures = numbers["forces"][0].astype(float)
             changed = change_of(numbers).of(pressures)(pressures)
             true = lengths_of(of_forces(changed, patch), -math.log(patch.flooded_force))
-            yield beside(point, true, score, lambda of=patch, at=point: reciprocals(of, *processes(at)))
+            yield beside(point, true, score, lambda patch=patch, at=point: reciprocals(patch, *processes(at)))
