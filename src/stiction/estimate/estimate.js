@@ -357,7 +357,7 @@ function byMode(number, tension) {
 function halfSineShock(beam, length) {
   const {clamps, modulus, thickness, gap} = beam, tension = tensionAt(beam, length), k = Math.sqrt(tension);
   const byUnit = clamps === 1 ? 1 / 8 : k < SLACK ? 1 / 384 - k ** 2 / 15360 : (1 / 8 - Math.tanh(k / 4) / (2 * k)) / k ** 2;
-  const modes = Array.from({length: MODES - 1}, (_, n) => clamps === 1 ? 0 : Math.abs(byMode(n + 1, tension)));
+  const modes = Array.from({length: MODES}, (_, n) => clamps === 1 ? 0 : Math.abs(byMode(n + 1, tension)));
   const overshoot = clamps === 1 ? OF_CANTILEVER : sum(modes) / byUnit;
   return modulus * thickness ** 2 * gap / (12 * DENSITY * length ** 4 * byUnit) / (HALF_SINE * overshoot);
 }

@@ -32,8 +32,8 @@ from stiction.estimate.closed.bending import (
 HALF_SINE = 1.7685
 #: Deflection of a cantilever by all modes of one sign over a uniform load's, `stiction.life.bending.Bent.overshoot`.
 _OF_CANTILEVER = 1.0290535885833705
-#: Modes of a bridge, and how near to its ends a root is [rad].
-_MODES, _NEAR = 24, 1e-9
+#: Modes of a bridge.
+_MODES = 24
 
 
 @dataclass(frozen=True)
@@ -148,7 +148,7 @@ class SlenderBeam:
         if self.clamps == 1:
             return _OF_CANTILEVER
         tension = self._tension(length)
-        return sum(abs(_by_mode(number, tension)) for number in range(1, _MODES)) / self._by_unit_load(length)
+        return sum(abs(_by_mode(number, tension)) for number in range(1, _MODES + 1)) / self._by_unit_load(length)
 
     def pull_in_at_once(self, length: float) -> float:
         """Voltage switched on at once that does not pull in a beam, with the fringes at its edges [V]."""
@@ -179,11 +179,11 @@ def _by_mode(number, tension):
     """Part of a mode in the deflection of the middle of a bridge by a unit load."""
 
     def slope(a):
-        """Slope at the clamps."""
+        """Slope at the clamps, times cos(a/2)."""
         b = math.sqrt(a * a + tension)
-        return a * math.tan(a / 2) + b * math.tanh(b / 2)
+        return a * math.sin(a / 2) + b * math.tanh(b / 2) * math.cos(a / 2)
 
-    a = root(lambda a: slope(a) * math.cos(a / 2), (2 * number - 1) * math.pi + _NEAR, 2 * number * math.pi)
+    a = root(slope, (2 * number - 1) * math.pi, 2 * number * math.pi)
     b = math.sqrt(a * a + tension)
     by_a, by_b = math.tan(a / 2) / a, math.tanh(b / 2) / b
     square = 1 / (2 * math.cos(a / 2) ** 2) + by_a + 1 / (2 * math.cosh(b / 2) ** 2) + by_b
