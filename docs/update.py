@@ -462,7 +462,8 @@ def redraw(folder, names, *configs):
 def shrink(picture, smaller, width):
     """Copy of a picture in its own colours and at most ``width`` pixels across, small enough for a repository.
 
-    The copy tells its resolution, so that the size of its text is known.
+    A large one has 256 colours, before it has fewer pixels. The copy tells its resolution, so that the size of its text
+    is known.
     """
     with Image.open(picture) as image:
         inches = image.width / image.info["dpi"][0] if "dpi" in image.info else None
@@ -471,9 +472,10 @@ def shrink(picture, smaller, width):
     for scale in (1, 0.85, 0.7, 0.6, 0.5):
         across = min(flat.width, round(scale * width))
         resized = flat.resize((across, round(flat.height * across / flat.width)), Image.Resampling.LANCZOS)
-        resized.save(smaller, optimize=True, **({"dpi": (across / inches,) * 2} if inches else {}))
-        if smaller.stat().st_size <= LARGEST:
-            return
+        for image in (resized, resized.quantize(256, dither=Image.Dither.NONE)):
+            image.save(smaller, optimize=True, **({"dpi": (across / inches,) * 2} if inches else {}))
+            if smaller.stat().st_size <= LARGEST:
+                return
     raise ValueError(f"{picture} stays above {LARGEST} bytes")
 
 

@@ -22,7 +22,7 @@ ALONG, ACROSS = 150, 1000
 @cache
 def touchdowns(play):
     """Mean energies of beams at offsets with a play [nm] (beams, touchdowns) [J/m²]."""
-    plan = plan_of_copy({"samples": 400, "chunks": 1}, BEAMS, {"coherence": COHERENCE})
+    plan = plan_of_copy({"samples": 400, "chunks": 1}, 200, {"coherence": COHERENCE})
     settings = in_si(
         pairs.Settings,
         select(pairs.Settings, plan.seen_by("copied", samples=1) | {"beam": {"width_um": 1e6 * ACROSS * SPACING}}),

@@ -139,18 +139,33 @@ def test_equal_data_give_equal_files(tmp_path):
 
 
 def heights(panel):
-    """Ordinates of the curves of a panel that have a marker."""
-    return [line.get_ydata() for line in panel.get_lines() if line.get_marker() not in ("None", "_", "|", "1", "2")]
+    """Ordinates of the curves of a panel that have a marker of a moment."""
+    return [line.get_ydata() for line in panel.get_lines() if line.get_marker() not in ("None", "_", "|", ".")]
 
 
 def test_figure_13_shows_slopes_and_published_values():
     panel = figures_studies.sensitivities({("b", "rms"): sensitivity(-6.0)}, {("b", "rms", 0.5): -6.5}).axes[0]
     assert [list(np.atleast_1d(y)) for y in heights(panel)] == [[-6.0, -6.0], [-6.5]]
-    sides = {line.get_marker(): list(line.get_ydata()) for line in panel.get_lines() if line.get_marker() in ("1", "2")}
-    np.testing.assert_allclose([sides["1"], sides["2"]], -6 * np.array([[1.5, 1.2], [0.7, 0.9]]))
     names = [text.get_text() for text in panel.figure.legends[0].get_texts()]
-    sides = [f"one-sided slopes of the mean: moment {side}" for side in ("lower", "higher")]
-    assert names == ["rms, ± standard error", *sides]
+    assert names == ["rms, ± standard error", "one-sided slopes of the mean: moment down to moment up (dot)"]
+
+
+def test_a_line_of_figure_13_leads_through_its_point_from_less_to_more_of_the_moment():
+    moments = {("b", name): sensitivity(slope) for name, slope in (("rms", -6.0), ("skewness", -3.0))}
+    panel = figures_studies.sensitivities(moments, {}).axes[0]
+    lines = [line for line in panel.get_lines() if line.get_marker() == "."]
+    expected = np.concatenate([slope * np.array([[1.5, 0.7], [1.2, 0.9]]) for slope in (-6, -3)])
+    np.testing.assert_allclose([line.get_ydata() for line in lines], expected)
+    assert [list(line.get_xdata()) for line in lines] == [[humidity] * 2 for humidity in HUMIDITIES] * 2
+    assert {tuple(line.get_markevery()) for line in lines} == {(1,)}, "a dot at more of the moment alone"
+    curves = [line for line in panel.get_lines() if line.get_marker() in ("o", "s")]
+    shifts = [line.get_transform().transform((0.5, -6)) - panel.transData.transform((0.5, -6)) for line in lines]
+    np.testing.assert_allclose(shifts[0], -shifts[2], atol=1e-9)
+    for curve, line in zip(curves, lines[::2], strict=True):
+        np.testing.assert_allclose(*(one.get_transform().transform((0.5, -6)) for one in (curve, line)))
+    assert shifts[0][0] < 0 == shifts[0][1]
+    low, high = panel.get_ylim()
+    assert low < expected.min() < expected.max() < high
 
 
 def bars(panel):

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from legends import covering
 from matplotlib.colors import to_rgb
 from scipy.special import ndtr
 
@@ -109,8 +110,12 @@ def test_stricter_sizes_are_marked_at_the_allowed_fraction_and_stated_in_the_tit
 def test_the_ladder_which_has_no_titles_names_stricter_sizes_in_its_legend():
     dried = Unasked(f"{Name.COLLAPSE}_water", "longest beam that stands", 90e-6)
     for unasked, said in (((dried,), ["stricter: 90 µm if water dries on it"]), ((), [])):
-        (legend,) = ladder(answered(unasked=unasked)).legends
-        assert [text.get_text() for text in legend.get_texts() if "stricter" in text.get_text()] == said
+        figure = ladder(answered(unasked=unasked))
+        steps, stuck = figure.axes
+        names = [text.get_text() for text in stuck.get_legend().get_texts()]
+        assert [name for name in names if "stricter" in name] == said
+        assert {"its 95 % band", "mean; the worst 5 % count", "limit by simulation, exact inputs"} < set(names)
+        assert (steps.get_legend(), figure.legends, covering(figure)) == (None, [], []), "below its own panel"
 
 
 def test_the_axis_of_a_force_begins_at_zero_and_fractions_are_in_words():

@@ -8,13 +8,14 @@ import xarray as xr
 from charted import EITHER, S_SHAPE, charted
 from ground import exactly, safe_with_tips, safe_without_tips
 from legends import covering
+from matplotlib.colors import to_hex
 from noted import noted
 
-from stiction.answer.data import Answer, AnswerInAir, Cause, Step
+from stiction.answer.data import Answer, AnswerInAir, Cause, Step, Unasked
 from stiction.devices.chart import error_between
 from stiction.report.devices import figures as figures_devices
 from stiction.report.devices import tables as tables_devices
-from stiction.report.style import save
+from stiction.report.style import BUILD, save
 from stiction.stages.devices import safe_lengths
 
 WARNINGS = {("C1", 0.44, S_SHAPE): [noted("Too wet.")], ("C1", 0.44, EITHER): [noted("Too wet."), noted("Too thin.")]}
@@ -89,7 +90,10 @@ def test_the_risk_shows_shares_bands_and_safe_lengths_of_every_device(found):
                 assert (round(1e6 * float(dataset.safe_length.sel(shape=shape, share=share)), 6), share) in points
     assert first.get_ylabel() == "P(stuck), simulated [–]"
     assert [len(panel.collections) for panel in figure.axes] == [2, 2, 1]
-    assert [panel.get_title(loc="left") for panel in (first, tip)] == ["(a) C1, beam", "(b) C1, beam or tip"]
+    assert [panel.get_title(loc="left") for panel in (first, tip)] == [
+        "(a) C1, beam, only if its tip cannot touch",
+        "(b) C1, beam or tip",
+    ]
     assert second.get_ylabel() == ""
     assert [text.get_text() for text in first.get_legend().get_texts()] == ["RH 0.44 (1) (2)", "RH 0.67 (2)"]
     assert figure._supxlabel.get_text().startswith("(1)")
@@ -174,9 +178,9 @@ def test_the_chart_shows_the_middle_share_of_every_thickness_gap_and_shape():
     figure, panels = charts()
     assert [axes.get_title(loc="left") for axes in figure.axes] == [
         "(a) C1, gap 10 µm, beam or tip",
-        "(b) C1, gap 10 µm, beam",
+        "(b) C1, gap 10 µm, beam, only if its\ntip cannot touch",
         "(c) C1, gap 20 µm, beam or tip",
-        "(d) C1, gap 20 µm, beam",
+        "(d) C1, gap 20 µm, beam, only if its\ntip cannot touch",
     ]
     for shape, length in ((S_SHAPE, 105), (EITHER, 107)):  # p = 0.001, thin, wide gap
         curve = next(line for line in panels[20, shape].lines if len(line.get_xdata()) == 3)
@@ -184,17 +188,69 @@ def test_the_chart_shows_the_middle_share_of_every_thickness_gap_and_shape():
         np.testing.assert_allclose(curve.get_ydata(), np.array([2, 1, 0.5]) * length)
 
 
+def answer_in(builds, build=80e-6, forbidden=()):
+    """Answer for C1 with sizes to build alone in some airs. The last of these decides."""
+    known = {"share": 1e-3, "unit": "m", "build": build, "exact": build, "size": build, "forbidden": forbidden}
+    steps = (Step(Cause.ESTIMATE, build, 1.0, list(builds)[-1], "S-shape", "safe_lengths"),)
+    dries = Unasked("collapse_water", "longest beam that does not collapse while water dries", 70e-6)
+    airs = tuple(AnswerInAir(humidity, size, np.nan, None) for humidity, size in builds.items())
+    return Answer("C1", "cantilever", steps=steps, airs=airs, unasked=(dries,), **known)
+
+
+WHOLE = "to build C1: 80 µm, but 70 µm if water dries on it"
+
+
+def diamonds(panel):
+    """Places of the sizes to build in a panel, by whether they are of an air alone."""
+    marks = [line for line in panel.lines if line.get_marker() == "D" and len(line.get_xdata())]
+    return {
+        alone: [tuple(mark.get_xydata()[0]) for mark in marks if (mark.get_label() != WHOLE) == alone]
+        for alone in (False, True)
+    }
+
+
 @pytest.mark.parametrize(("gap", "forbidden"), [(20e-6, ()), (20e-6, ("gap",)), (15e-6, ())])
-def test_the_size_to_build_is_in_the_panel_of_the_own_gap_and_of_all_that_holds_the_device(gap, forbidden):
-    known = {"share": 1e-3, "unit": "m", "build": 80e-6, "exact": 80e-6, "size": 80e-6, "forbidden": forbidden}
-    steps = (Step(Cause.ESTIMATE, 80e-6, 1.0, 0.5, "S-shape", "safe_lengths"),)
-    answer = Answer("C1", "cantilever", steps=steps, airs=(AnswerInAir(0.5, 80e-6, np.nan, None),), **known)
-    marked = []
-    for panel in figures_devices.chart(CHARTS, STEEP, {"C1": (gap, answer)}).axes:
-        marks = [line for line in panel.lines if line.get_label() == "to build C1 as it is stated: 80 µm"]
-        marked += [(panel.get_title(loc="left"), *mark.get_xydata()[0]) for mark in marks]
-    shown = gap == 20e-6 and not forbidden
-    assert marked == [("(c) C1, gap 20 µm, beam or tip", 0.5, pytest.approx(80))] * shown
+def test_the_sizes_to_build_are_in_the_panel_of_the_own_gap_and_of_all_that_holds_the_device(gap, forbidden):
+    answer = answer_in({0.4: 90e-6, 0.6: np.nan, 0.5: 81e-6}, forbidden=forbidden)
+    panels = figures_devices.chart(CHARTS, STEEP, {"C1": (2e-6, gap, answer)}).axes
+    marked = {panel.get_title(loc="left"): found for panel in panels if any((found := diamonds(panel)).values())}
+    shown = {"(c) C1, gap 20 µm, beam or tip": {False: [(0.5, pytest.approx(80))], True: [(0.4, pytest.approx(90))]}}
+    assert marked == (shown if gap == 20e-6 and not forbidden else {})
+
+
+@pytest.mark.parametrize(("thickness", "limits"), [(2e-6, [214, 107]), (3e-6, [230, 115]), (2.5e-6, [])])
+def test_a_line_leads_to_a_size_to_build_from_the_limit_of_the_own_thickness(thickness, limits):
+    answer = answer_in({0.4: 90e-6, 0.5: 81e-6})
+    panel = figures_devices.chart(CHARTS, STEEP, {"C1": (thickness, 20e-6, answer)}).axes[2]
+    lines = [line.get_xydata() for line in panel.lines if to_hex(line.get_color()) == BUILD.lower()]
+    lines = [line for line in lines if len(line) == 2]
+    expected = [[(rh, size), (rh, top)] for rh, size, top in zip((0.4, 0.5), (90, 80), limits, strict=False)]
+    assert len(lines) == len(limits)
+    np.testing.assert_allclose(lines, np.reshape(expected, np.shape(lines)))
+    numbers = [text.get_text() for text in panel.texts if to_hex(text.get_color()) == BUILD.lower()]
+    assert numbers == ["90", "80"]
+
+
+def test_the_size_to_build_is_named_with_the_stricter_ones_below_the_panels():
+    figure = figures_devices.chart(CHARTS, STEEP, {"C1": (2e-6, 20e-6, answer_in({0.4: 90e-6, 0.5: 81e-6}))})
+    assert [WHOLE in named(figure), "to build C1 in this air alone" in named(figure)] == [True, True]
+    single = figures_devices.chart(CHARTS, STEEP, {"C1": (2e-6, 20e-6, answer_in({0.5: 80e-6}))})
+    assert "to build C1 in this air alone" not in named(single)
+    assert covering(figure) == []
+
+
+def test_words_above_the_longest_curve_say_that_longer_beams_stick():
+    for panel in figures_devices.chart(CHARTS, {}).axes:
+        assert "one touchdown" in panel.get_ylabel()
+        words = {text.get_text(): text for text in panel.texts if text.get_style() == "italic"}
+        assert list(words) == ["longer: sticks", "shorter: releases"]
+        assert len({text.xy for text in words.values()}) == 1
+        curve = max((line for line in panel.lines if len(line.get_xdata()) == 3), key=lambda line: line.get_ydata()[0])
+        assert tuple(words["longer: sticks"].xy) in {tuple(point) for point in curve.get_xydata()}
+        assert [text.get_va() for text in words.values()] == ["bottom", "top"]
+        assert [text.get_ha() for text in words.values()] == ["left", "right"], "where a falling curve leaves room"
+    unknown = {case: one.assign(safe_length=one.safe_length * np.nan) for case, one in CHARTS.items()}
+    assert not [text for text in figures_devices.chart(unknown, {}).axes[0].texts if text.get_style() == "italic"]
 
 
 NINE = {("C1", round(rh, 2)): charted(round(rh, 2), 2 - rh**2) for rh in np.linspace(0.4, 0.8, 9)}
@@ -322,6 +378,7 @@ def test_a_chart_explains_its_lines_once_below_all_panels():
         "1 in 1000 stick by beam",
         "by a power law, ± 0.4 %",
         "axes of panels differ",
+        "(1) to (2): note (either side)",
     ]
     assert all(panel.get_legend() is None for panel in panels.values())
 
@@ -343,7 +400,8 @@ def test_the_chart_has_numbers_of_warnings_beside_the_thickness():
     assert beside(panels[20, S_SHAPE]) == ["2 µm thick (1)", "3 µm thick"]
     assert beside(panels[20, EITHER]) == ["2 µm thick (1) (2)", "3 µm thick"]
     assert beside(panels[10, EITHER]) == ["2 µm thick", "3 µm thick"]
-    assert figure._supxlabel.get_text() == "(1) to (2): note (either side)"
+    assert named(figure)[-1] == "(1) to (2): note (either side)", "below the panels, also on a page"
+    assert figure._supxlabel is None is figure._suptitle
 
 
 @pytest.mark.slow

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 from drawn_curves import etched, rough
 from legends import covering
 from matplotlib.collections import LineCollection
@@ -12,6 +13,7 @@ from stiction.report.axes import figures
 from stiction.report.axes.labels import Label, put
 from stiction.report.axes.roughness import crossings_of, ranges_of, sure_in_short
 from stiction.report.style import BUILD, panels, png
+from stiction.stages.devices.opening import EITHER, S_SHAPE
 
 
 def texts(figure):
@@ -73,14 +75,14 @@ def test_crossings_have_their_values_and_humidities_without_one_are_named():
     figure = figures.roughness(found)
     at_lower = "RH 0.6: sure from 4.57 nm\nestimate 4, 95 %: 3.35 to 4.65 nm"
     at_upper = "RH 0.8: sure from 4.69 nm\nestimate 4, 95 %: 3.22 to 4.78 nm"
-    assert {at_lower, at_upper, "restoring force 28 µN"} == set(texts(figure))
+    assert {at_lower, at_upper, "restoring force 28 µN\ncurve below: releases"} == set(texts(figure))
     weak = figures.roughness(found.assign(required=found.required / 10).isel(crossing=[]))
-    assert set(texts(weak)) == {"RH 0.6, RH 0.8: not in this range", "restoring force 2.8 µN"}
+    assert set(texts(weak)) == {"RH 0.6, RH 0.8: not in this range", "restoring force 2.8 µN\ncurve below: releases"}
     whole = found.assign(range_low=found.range_low * 0 + 1e-9, required=found.required * 10)
     strong = figures.roughness(whole.isel(crossing=[]))
-    assert set(texts(strong)) == {"RH 0.6, RH 0.8: sure everywhere", "restoring force 280 µN"}
+    assert set(texts(strong)) == {"RH 0.6, RH 0.8: sure everywhere", "restoring force 280 µN\ncurve below: releases"}
     unsure = figures.roughness(whole.isel(crossing=[], range=[]))
-    assert set(texts(unsure)) == {"RH 0.6, RH 0.8: nowhere sure", "restoring force 280 µN"}
+    assert set(texts(unsure)) == {"RH 0.6, RH 0.8: nowhere sure", "restoring force 280 µN\ncurve below: releases"}
     assert covering(figure) == covering(weak) == covering(strong) == []
     absent = next(text for text in weak.axes[0].texts if "not in" in text.get_text())
     assert absent.get_ha() == "right", "where the curves are nearest to the required force"
@@ -98,6 +100,49 @@ def test_the_thick_line_and_the_words_begin_where_the_simulated_limit_meets_the_
         assert said.startswith(f"RH {humidity}: sure from {low:.3g} nm\n")
         (crossed,) = crossings_of(found, humidity, "force").crossing_place.values
         assert low > 1e9 * crossed, "what is sure is not the place of the estimate"
+
+
+@pytest.mark.parametrize(("is_beam", "side"), [(False, "below"), (True, "above")])
+def test_the_required_line_says_on_which_side_the_device_releases(is_beam, side):
+    found = rough(is_beam)
+    panel = figures.roughness(found).axes[0]
+    assert [text for text in texts(panel.figure) if text.endswith(f"\ncurve {side}: releases")]
+    roughest = float(found.estimate.sel(roughness=8e-9, humidity=0.6).squeeze())
+    assert (roughest > float(found.required)) == is_beam
+    assert float(found.stuck.sel(roughness=8e-9, humidity=0.6, end="estimate").squeeze()) < float(found.share)
+
+
+def end_state(shape, factor):
+    """Curve of a beam in an end state, with its limits this much longer than where the tip holds it."""
+    one = rough(True).assign_coords(shape=[shape])
+    places = {f"{name}_shape": (name, [shape] * one.sizes[name]) for name in ("crossing", "range")}
+    return one.assign(places).assign({name: factor * one[name] for name in ("estimate", "error", "safe")})
+
+
+def of_cantilever():
+    """Curve of a beam that its tip can hold. The beam alone is long enough everywhere."""
+    tip, alone = end_state(EITHER, 1.0), end_state(S_SHAPE, 8.0).isel(crossing=[])
+    ends = [alone.assign(range_low=alone.range_low * 0 + 1e-9), tip]
+    along = {name: next((dim for dim in ("shape", "crossing", "range") if dim in tip[name].dims), "") for name in tip}
+    joined = {name: xr.concat([end[name] for end in ends], dim) for name, dim in along.items() if dim}
+    rest = tip.drop_vars([*joined, "shape"]).drop_dims(["crossing", "range"], errors="ignore")
+    return rest.assign(joined).assign_attrs(tip.attrs)
+
+
+def test_the_end_state_that_decides_is_first_and_nothing_is_sure_where_it_does_not_decide():
+    figure = figures.roughness(of_cantilever())
+    decides, alone = figure.axes
+    assert decides.get_title(loc="left") == "(a) beam or tip"
+    assert alone.get_title(loc="left") == "(b) beam, only if its tip cannot touch"
+    said = [[text.get_text().replace("\n", " ") for text in panel.texts] for panel in (decides, alone)]
+    assert [sum("sure from" in text for text in one) for one in said] == [2, 0]
+    assert "RH 0.6, RH 0.8: enough everywhere, only if its tip cannot touch" in said[1]
+    thick = [
+        [line for line in panel.collections if isinstance(line, LineCollection) and line.get_linewidth()[0] > 3]
+        for panel in (decides, alone)
+    ]
+    assert [len(lines) for lines in thick] == [2, 0]
+    assert covering(figure) == []
 
 
 @pytest.mark.parametrize(
@@ -147,6 +192,10 @@ def test_that_no_setting_suffices_is_said_and_only_then():
     none = settings.assign(sufficient=settings.sufficient * np.nan)
     figure = figures.devices(curve, none, "D")
     assert said in texts(figure)
+    assert "best, but not sufficient: 80.1 s, 95 %: 78.9 to 81 s" in texts(figure)
+    (best,) = (line for line in figure.axes[0].lines if line.get_marker() == "D")
+    assert (to_hex(best.get_color()), best.get_markerfacecolor()) == ("#666666", "white"), "grey and open"
+    assert not any(to_hex(text.get_color()) == BUILD.lower() for text in figure.axes[0].texts)
     assert "next run suffices, 95 %" not in names(figure)
     unknown = none.assign(best=none.best * np.nan)
     assert not {text for text in texts(figures.devices(curve, unknown, "D")) if "best" in text or text == said}
@@ -157,3 +206,27 @@ def test_text_of_curves_can_be_read_on_a_phone(draw):
     figure = draw()
     shown = [text for text in figure.findobj(Text) if text.get_visible() and text.get_text()]
     assert min(text.get_fontsize() for text in shown) / 72 * 390 / figure.get_figwidth() >= 11  # pixels
+
+
+def hatched(safe_by):
+    """Panel at RH 0.6 of a map over rms and skewness, and its hatching, with limits this factor above the estimate."""
+    found = rough(others=(0.0, -0.5, 0.5))
+    panel = figures.roughness_map(found.assign(safe=found.estimate * safe_by)).axes[1]
+    return panel, [one for one in panel.collections if getattr(one, "hatches", None) and any(one.hatches)]
+
+
+def test_what_a_map_meets_without_confidence_is_hatched():
+    panel, (hatching,) = hatched(1.3)
+    clip = hatching.get_clip_path().get_fully_transformed_path()
+    for rms, expected in ((3.0, (True, False)), (4.5, (True, True)), (7.5, (False, True))):  # estimate: 4, limit: 6.2
+        place = (rms, 0.0)
+        unsure = hatching.get_paths()[0].contains_point(place)
+        assert (unsure, clip.contains_point(panel.transData.transform(place))) == expected, rms
+    assert "met without 95 % confidence" in panel.get_legend_handles_labels()[1]
+    panel, none = hatched(0.1)
+    assert (none, "met without 95 % confidence" in panel.get_legend_handles_labels()[1]) == ([], False)
+
+
+def test_an_unknown_bound_of_a_map_is_no_confidence():
+    _, (hatching,) = hatched(np.nan)
+    assert hatching.get_paths()[0].contains_point((6.0, 0.0))

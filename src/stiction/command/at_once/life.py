@@ -9,8 +9,6 @@ from stiction.rounding import bounding, grouped
 
 #: What becomes of a beam that dries, by the number of bounds of its length that it exceeds, as on a page.
 _FATES = ("stands", "may collapse", "collapses")
-#: Number from which on digits are in groups.
-_GROUPED = 10_000
 
 
 def sentences(estimate: Estimate, symbol: str) -> Iterator[str]:
@@ -31,7 +29,7 @@ def bound(size: float, unit: str, up: bool = False) -> str:
     ('199', '200', '153 000')
     """
     text = bounding(from_si(size, unit), 3, up)
-    return grouped(float(text)) if float(text) >= _GROUPED else text
+    return text if "." in text else grouped(float(text))
 
 
 def as_stated(size: float, unit: str) -> str:

@@ -54,12 +54,16 @@ _LABEL = {"xycoords": ("axes fraction", "data"), "va": "bottom", "fontsize": 7, 
 
 @styled
 def ladder(answer: Answer) -> Figure:
-    """Draw the steps from the estimate to the size to build that are known, one row each, and beside them P(stuck)."""
+    """Draw the steps from the estimate to the size to build that are known, one row each, and beside them P(stuck).
+
+    The legend of P(stuck) is below its own panel.
+    """
     figure, grid = panels(1, 2, (2 * SINGLE, _AROUND + _ROW * len(answer.known_steps)))
     _steps(grid[0, 0], answer)
     _stuck(grid[0, 1], answer, stricter=textwrap.fill(f"stricter: {'; '.join(words.stricter(answer))}", _LINE))
     grid[0, 1].set_ylabel(_STUCK)
-    _explain(figure, [grid[0, 1]])
+    if entries := handles(grid[0, 1])[0]:
+        legend_below(grid[0, 1], entries)
     return figure
 
 

@@ -7,6 +7,7 @@ import xarray as xr
 from matplotlib.collections import Collection
 from matplotlib.colors import CenteredNorm
 from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
 
 from stiction.config.surfaces import process
 from stiction.contact.air import Air
@@ -19,6 +20,7 @@ from stiction.report.style import (
     BUILD,
     DOUBLE,
     INTERVAL,
+    OUTLINED,
     SINGLE,
     columns_of_panels,
     figure_stage,
@@ -52,6 +54,8 @@ _WITHIN_A_DECADE = (1, 1.5, 2, 3, 4, 6, 8)
 _WIDE, _HIGH = 3.4, 2.8
 #: Line along the required value where it is sure.
 _SURE = {"linewidth": 3.5, "alpha": 0.6}
+#: Colour of the best setting where none suffices.
+_NOT_ENOUGH = "0.4"
 #: Part of a panel of a process that is free of curves at its bottom and its top.
 _FREE = 0.14
 #: Longest line of a label [characters].
@@ -106,10 +110,11 @@ def devices(curve: xr.Dataset, recommended: xr.Dataset, device: str) -> Figure:
 
 def _curves(curve, draw, mark):
     """Figure of a curve: ``draw`` draws it at a humidity, ``mark`` what is common to a panel, and returns labels."""
-    shapes = list(map(str, curve["shape"].values))
+    shapes = _strictest_first(curve)
     figure, axes = panels(len(shapes), 1, (_WIDE, _HIGH * len(shapes)))
     sought, level = sought_of(curve), TO_UM * float(curve.required)
-    required = Label(f"{sought.required} {sought.in_words(float(curve.required))}", "black")
+    side = "below" if sought.more_is_better else "above"
+    words = f"{sought.required} {sought.in_words(float(curve.required))}\ncurve {side}: releases"
     for panel, shape in zip(axes[:, 0], shapes, strict=True):
         for humidity, colour in humidity_colours(curve.humidity.values.tolist()).items():
             draw(panel, curve.sel(humidity=humidity, shape=shape), colour)
@@ -119,16 +124,21 @@ def _curves(curve, draw, mark):
         _plain(panel.yaxis)
         _show(panel.xaxis, panel.set_xscale, curve, axes_of(curve)[0])
         panel.set_ylabel(f"{sought.label} at which\n{one_in(float(curve.share))} sticks [{sought.shown}]")
-        put(panel, level, [*labels, required])
+        put(panel, level, [*labels, Label(words, "black")])
     letter(axes, _held_by(shapes))
     lines_first = sorted(zip(*handles(*axes[:, 0]), strict=True), key=lambda one: isinstance(one[0], Collection))
     legend_outside(figure, tuple(zip(*lines_first, strict=True)), "lower", 2)
     return figure
 
 
+def _strictest_first(curve):
+    """End states of a curve, beginning with the one that decides."""
+    return list(map(str, curve["shape"].values[::-1]))
+
+
 def _held_by(shapes, end=""):
     """What holds a device in each end state, for the titles of panels; nothing where there is one."""
-    return [END_STATES[shape].by + end for shape in shapes] if len(shapes) > 1 else [""]
+    return [END_STATES[shape].title + end for shape in shapes] if len(shapes) > 1 else [""]
 
 
 def _simulated(panel, line, colour):
@@ -142,7 +152,8 @@ def _simulated(panel, line, colour):
     if np.isfinite(line.bound.values).any():
         style, label = END_STATES[shape].lines[1], f"flat surfaces, {END_STATES[shape].by}"
         panel.plot(x, TO_UM * line.bound.values, style, color=colour, linewidth=0.8, label=label)
-    for ends in axis.in_unit(ranges_of(line, float(line.humidity), shape)):
+    sure = [] if END_STATES[shape].only_if else axis.in_unit(ranges_of(line, float(line.humidity), shape))
+    for ends in sure:
         panel.hlines(TO_UM * float(line.required), *ends, color=colour, **_SURE)
     crossed = crossings_of(line, float(line.humidity), shape)
     if crossed.sizes["crossing"]:
@@ -162,7 +173,7 @@ def _crossings(curve, shape):
         places, sure = crossed.crossing_place.values, sure_in_short(curve, humidity, shape)
         for k, (place, reach) in enumerate(zip(places, INTERVAL * crossed.crossing_error.values, strict=True)):
             said = f"estimate {axis.text(place)}, 95 %: {axis.text(place - reach)} to {axis.at(place + reach)}"
-            text = f"{air}: {said}" if k else f"{air}: {sure}\n{said}"
+            text = f"{air}: {said}" if k else textwrap.fill(f"{air}: {sure}", _LONGEST) + f"\n{said}"
             labels.append(Label(text, colour, axis.in_unit(place)))
         margin = margins_of(curve.sel(humidity=humidity, shape=shape))
         if not len(places) and np.isfinite(margin).any():
@@ -192,18 +203,22 @@ def _band(panel, line, colour):
 
 
 def _best(panel, one):
-    """The best setting with its 95 % interval at the bottom of a panel, and whether any setting suffices."""
+    """The best setting with its 95 % interval at the bottom of a panel, grey and open where no setting suffices."""
     along, best, (low, high) = axes_of(one)[0], float(one.best), map(float, one.best_interval)
+    suffices = bool(along.ranges(one.sufficient.values))
+    style = {"color": BUILD} if suffices else {"color": _NOT_ENOUGH, "markerfacecolor": "white"}
     bottom, top = panel.get_ylim()
     free = (top / bottom) ** _FREE
     panel.set_ylim(bottom / free, top * free)
     reach, across = np.maximum([[best - low], [high - best]], 0), panel.get_xaxis_transform()
-    panel.errorbar(best, _FREE / 4, xerr=reach, fmt="D", color=BUILD, markersize=4, transform=across)
-    said = f"best {along.at(best)}" + (f", 95 %: {along.text(low)} to {along.at(high)}" if low < high else "")
+    panel.errorbar(best, _FREE / 4, xerr=reach, fmt="D", markersize=4, transform=across, **style)
+    said = ("best " if suffices else "best, but not sufficient: ") + along.at(best)
+    said += f", 95 %: {along.text(low)} to {along.at(high)}" if low < high else ""
     part = (best - along.values[0]) / np.ptp(along.values)
     place = {"ha": ("left", "center", "right")[int(np.clip(3 * part, 0, 2))], "va": "bottom", "fontsize": 7}
-    panel.annotate(said, (best, _FREE / 4), (0, 4), xycoords=across, textcoords="offset points", color=BUILD, **place)
-    if not along.ranges(one.sufficient.values):
+    place |= {"color": style["color"], "path_effects": OUTLINED}
+    panel.annotate(said, (best, _FREE / 4), (0, 4), xycoords=across, textcoords="offset points", **place)
+    if not suffices:
         panel.text(
             0.5,
             0.97,
@@ -244,7 +259,7 @@ def roughness_map(data: xr.Dataset) -> Figure:
 
     The panels are by humidity and end state.
     """
-    humidities, shapes = data.humidity.values, list(map(str, data["shape"].values))
+    humidities, shapes = data.humidity.values, _strictest_first(data)
     size = min(DOUBLE, _WIDE * len(shapes)), _HIGH * len(humidities)
     figure, axes = panels(len(humidities), len(shapes), size)
     along, across = axes_of(data)
@@ -280,6 +295,7 @@ def _filled(panel, computed, margins, label, shown=None):
     if levels.count():
         colours = panel.contourf(x, y, levels, 12, cmap="RdBu", norm=CenteredNorm())
         panel.figure.colorbar(colours, ax=panel, label=label)
+    _hatch(panel, x, y, *margins)
     lines = (("-", "estimate meets the requirement"), ("--", "with 95 % confidence too"))
     for values, (line, words) in zip(margins, lines, strict=True):
         if np.nanmin(values, initial=np.inf) < 0 < np.nanmax(values, initial=-np.inf):
@@ -290,6 +306,18 @@ def _filled(panel, computed, margins, label, shown=None):
     panel.plot(*map(np.ravel, points), ".", color="0.3", markersize=2, label="computed")
     for side, scale, axis in zip((panel.xaxis, panel.yaxis), (panel.set_xscale, panel.set_yscale), axes, strict=True):
         _show(side, scale, computed, axis)
+
+
+def _hatch(panel, x, y, margin, safe):
+    """Hatch where the estimate meets the requirement and its 95 % bound does not, or is unknown."""
+    safe = np.where(np.isnan(safe), -np.abs(margin), safe)
+    if np.nanmax(margin, initial=-np.inf) <= 0 or np.nanmin(safe, initial=np.inf) >= 0:
+        return
+    met = panel.contourf(x, y, np.ma.masked_invalid(margin), [0, np.inf], colors="none")
+    unsure = panel.contourf(x, y, np.ma.masked_invalid(safe), [-np.inf, 0], colors="none", hatches=["////"])
+    unsure.set_clip_path(met.get_paths()[0], panel.transData)
+    entry = {"facecolor": "none", "edgecolor": "black", "linewidth": 0, "label": "met without 95 % confidence"}
+    panel.add_patch(Rectangle((x[0], y[0]), 0, 0, hatch="////", **entry))
 
 
 # Laws

@@ -149,11 +149,17 @@ def ranges_of(curve: xr.Dataset, humidity: float, shape: str) -> np.ndarray:
 
 
 def sure_in_short(curve: xr.Dataset, humidity: float, shape: str) -> str:
-    """Where the simulated limit of a curve meets the requirement, in a few words for a picture."""
+    """Where the simulated limit of a curve meets the requirement, in a few words for a picture.
+
+    Nothing is sure where a stricter end state decides: the words then have the condition under which it does not.
+    """
     axis, ranges = axes_of(curve)[0], ranges_of(curve, humidity, shape)
     computed = axis.values[curve.safe.sel(humidity=humidity, shape=shape).notnull().values]
     parts = [_part(axis, ends, computed) for ends in ranges]
-    return f"sure {' or '.join(parts)}" if parts else "nowhere sure"
+    if not parts:
+        return "nowhere sure"
+    where, only_if = " or ".join(parts), END_STATES[shape].only_if
+    return f"enough {where}, {only_if}" if only_if else f"sure {where}"
 
 
 def _part(axis: Axis, ends, computed):

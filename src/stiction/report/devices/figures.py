@@ -2,7 +2,7 @@
 
 import textwrap
 from collections.abc import Iterable, Mapping
-from itertools import product
+from itertools import chain, product
 from typing import Any
 
 import numpy as np
@@ -19,8 +19,8 @@ from stiction.devices.limits.limit import Limit
 from stiction.devices.risk import one_in
 from stiction.plan.names import by_name
 from stiction.report.answer.tables import of_datasets
-from stiction.report.answer.words import is_forbidden
-from stiction.report.format import TO_UM, UM, fraction_with_band, safe_size
+from stiction.report.answer.words import is_forbidden, to_build
+from stiction.report.format import TO_UM, UM, bounding, fraction_with_band
 from stiction.report.limits.words import distinct, in_short, numbered, with_numbers
 from stiction.report.style import (
     BUILD,
@@ -32,7 +32,6 @@ from stiction.report.style import (
     handles,
     humidity_axis,
     humidity_colours,
-    is_page,
     legend_below,
     legend_outside,
     letter_lines,
@@ -50,8 +49,10 @@ from stiction.stages.devices.end_states import END_STATES
 _BASES = {"sampled": "o", "fitted": "s", "extrapolated": "x", "longest": ">", "flat": "|"}
 #: Height of a line of panels, and of an entry of the legends below them [in].
 _PANEL, _ENTRY = 3.3, 0.12
-#: Mean width of a character below a figure [in].
+#: Mean width of a character of a title, or below a figure [in].
 _CHARACTER = 0.05
+#: Label of the lengths of a chart.
+_OF_CHART = "simulated limit: one touchdown,\ninputs exact (not to build) [µm]"
 #: Points of a curve between computed humidities.
 _POINTS = 200
 #: Space above the longest curve of a chart, in units of the range of its lengths.
@@ -60,13 +61,18 @@ _ROOM = 0.05
 _APART = 0.05
 
 
-def refer_to_warnings(figure: Figure, warnings: Mapping[Any, list[Limit]], *, above: bool = False) -> None:
-    """Explain the numbers of the warnings below or ``above`` a figure, and add their texts to its caption."""
-    if sentences := with_numbers(warnings):
-        numbers = "(1)" if len(sentences) == 1 else f"(1) to ({len(sentences)})"
-        figure.set_label("\n".join(["Warnings:", *sentences]))
-        say, fitting = figure.suptitle if above else figure.supxlabel, int(figure.get_figwidth() / _CHARACTER)
-        say(textwrap.fill(f"{numbers}: {in_short(distinct(warnings))}", fitting), fontsize=7, ha="left", x=0.01)
+def refer_to_warnings(figure: Figure, warnings: Mapping[Any, list[Limit]]) -> str:
+    """Add the texts of warnings to the caption of a figure, and return their numbers and short form."""
+    if not (sentences := with_numbers(warnings)):
+        return ""
+    figure.set_label("\n".join(["Warnings:", *sentences]))
+    numbers = "(1)" if len(sentences) == 1 else f"(1) to ({len(sentences)})"
+    return _filled(f"{numbers}: {in_short(distinct(warnings))}", figure)
+
+
+def _filled(text, figure, across=1):
+    """Text in lines that fit below a figure, or above a panel of one with some panels side by side."""
+    return textwrap.fill(text, int(figure.get_figwidth() / across / _CHARACTER))
 
 
 @styled
@@ -101,10 +107,12 @@ def simulated(
         )
     for line in lines:
         line[0, 0].set_ylabel("P(stuck), simulated [–]")
-    letter_lines(lines, [f"{name}, {END_STATES[shape].by}" for name, shape in subjects])
+    titles = [f"{name}, {END_STATES[shape].title}" for name, shape in subjects]
+    letter_lines(lines, [_filled(title, figure, lines[0].shape[1]) for title in titles])
     _explain(columns[0, 0], datasets)
     legend_outside(figure, handles(columns[0, 0]), "upper", 4 if len(subjects) > 1 else 3)
-    refer_to_warnings(figure, warnings)
+    if below := refer_to_warnings(figure, warnings):
+        figure.supxlabel(below, fontsize=7, ha="left", x=0.01)
     return figure
 
 
@@ -158,14 +166,14 @@ def _explain(panel, datasets):
 def chart(
     datasets: Mapping[tuple[str, float], xr.Dataset],
     warnings: Mapping[tuple[str, float, float, str], list],
-    answers: Mapping[str, tuple[float, Answer]] | None = None,
+    answers: Mapping[str, tuple[float, float, Answer]] | None = None,
 ) -> Figure:
-    """Safe length over the relative humidity for the middle one of the shares.
+    """Simulated limit of lengths against the relative humidity for the middle one of the shares.
 
     Each device, gap and shape has a panel: a tip holds beams that are so much shorter that one axis would hide them.
-    The panel of all that can hold a device is first, and has its size to build, from the gap [m] and answer by device.
-    Dry air is beside the axis. The numbers of the warnings, by name, thickness [m], gap [m] and shape, mark the curves;
-    there may be none.
+    The panel of all that can hold a device is first, and has its sizes to build, from the thickness [m], gap [m] and
+    answer by device. Dry air is beside the axis. The numbers of the warnings, by name, thickness [m], gap [m] and
+    shape, mark the curves; there may be none.
     """
     numbers = numbered(warnings)
     wholes = axes(datasets)
@@ -179,35 +187,71 @@ def chart(
     for panel, (name, gap, shape) in zip(columns[:, 0], subjects, strict=True):
         curves = wholes[name].sel(gap=gap, shape=shape)
         _thicknesses(panel, curves, shape, placed[name])
-        own_gap, answer = (answers or {}).get(name, (np.nan, None))
-        if shape == wholes[name]["shape"].values[-1] and np.isclose(gap, own_gap, rtol=1e-6, atol=0):
-            _mark_size_to_build(panel, name, answer, placed[name])
+        thickness, own_gap, answer = (answers or {}).get(name, (np.nan, np.nan, None))
+        if not END_STATES[shape].only_if and np.isclose(gap, own_gap, rtol=1e-6, atol=0):
+            limits = _limits(curves.isel(thickness=np.isclose(curves.thickness, thickness, rtol=1e-6, atol=0)))
+            _mark_sizes_to_build(panel, limits, answer, placed[name])
         low, high = panel.dataLim.intervaly
-        panel.set(
-            xlabel="relative humidity [–]",
-            ylabel="simulated limit [µm]",
-            ylim=(0.95 * low, high + _ROOM * (high - low)),
-        )
+        panel.set(xlabel="relative humidity [–]", ylabel=_OF_CHART, ylim=(0.95 * low, high + _ROOM * (high - low)))
         humidity_axis(panel, placed[name])
+        _name_sides(panel, _limits(curves), placed[name])
         marks = [
             _marks_of_warnings(numbers.get((name, thickness, gap, shape), ())) for thickness in curves.thickness.values
         ]
         _name_thicknesses(panel, curves, marks)
-    letter_lines(lines, [f"{name}, gap {TO_UM * gap:g} µm, {END_STATES[shape].by}" for name, gap, shape in subjects])
+    titles = [f"{name}, gap {TO_UM * gap:g} µm, {END_STATES[shape].title}" for name, gap, shape in subjects]
+    letter_lines(lines, [_filled(title, figure, lines[0].shape[1]) for title in titles])
     shown = sorted(zip(*handles(*columns[:, 0]), strict=True), key=lambda entry: isinstance(entry[0], PolyCollection))
-    if len(subjects) > 1:
-        shown.append((Line2D([], [], linestyle=""), "axes of panels differ"))
-    legend_outside(figure, tuple(zip(*shown, strict=True)), "lower", 2)
-    refer_to_warnings(figure, warnings, above=is_page())  # clear of the legend
+    below = ["axes of panels differ"] * (len(subjects) > 1), [refer_to_warnings(figure, warnings)]
+    shown += [(Line2D([], [], linestyle=""), text) for text in chain(*below) if text]
+    legend_outside(figure, ([entry for entry, _ in shown], [_filled(text, figure) for _, text in shown]), "lower", 2)
     return figure
 
 
-def _mark_size_to_build(panel, name, answer, placed):
-    """Mark the size to build of a device, with all that it states, in the air that decides; none that is forbidden."""
-    if np.isfinite(answer.build) and not is_forbidden(answer):
-        air = answer.together.humidity
-        at, label = placed.get(air, air), f"to build {name} as it is stated: {safe_size(answer.build, answer.sought)}"
-        panel.plot(at, TO_UM * answer.build, "D", color=BUILD, markersize=5, zorder=4, label=label)
+def _limits(curves):
+    """Simulated limits for the middle one of the shares, by thickness and humidity [µm]."""
+    return TO_UM * curves.safe_length.sel(share=_middle(curves)).transpose("thickness", "relative_humidity")
+
+
+def _mark_sizes_to_build(panel, limits, answer, placed):
+    """Mark the size to build of a device in each stated air, and in all of them where it is decided.
+
+    A line leads to each from the simulated limit of a beam of its thickness, if the chart has this (1 or 0, humidity).
+    There are none if a limit forbids them.
+    """
+    if is_forbidden(answer) or not np.isfinite(answer.build):
+        return
+    decides, sought = answer.together.humidity, answer.sought
+    whole = f"to build {answer.device}: {to_build(answer)}"
+    alone = {air.humidity: air.build for air in answer.airs if air.humidity != decides and np.isfinite(air.build)}
+    only = f"to build {answer.device} in this air alone"
+    styles = {"markerfacecolor": "white", "label": only}, {"label": whole}
+    for sizes, style in zip((alone, {decides: answer.build}), styles, strict=True):
+        for humidity, size in sizes.items():
+            at, height = placed.get(humidity, humidity), TO_UM * size
+            for limit in limits.sel(relative_humidity=limits.relative_humidity == humidity).values.flat:
+                panel.plot([at, at], [height, limit], color=BUILD, linewidth=0.8)
+            panel.plot(at, height, "D", color=BUILD, markersize=5, zorder=4, linestyle="", **style)
+            number = bounding(size / sought.scale, 3, sought.more_is_better)
+            _write(panel, number, (at, height), (3, -2), color=BUILD, va="top", zorder=5)
+
+
+def _name_sides(panel, limits, placed):
+    """Name both sides of the longest curve of a panel at its middle point."""
+    curve = limits.max("thickness").dropna("relative_humidity")
+    if not curve.size:
+        return
+    k = curve.size // 2
+    point = placed[float(curve.relative_humidity[k])], float(curve[k])
+    above, below = ("left", "right") if curve[0] >= curve[-1] else ("right", "left")
+    _write(panel, "longer: sticks", point, (0, 4), ha=above, va="bottom", style="italic")
+    _write(panel, "shorter: releases", point, (0, -4), ha=below, va="top", style="italic")
+
+
+def _write(panel, text, point, apart, **style):
+    """Small words beside a point of a panel, some points apart from it."""
+    outlined = {"textcoords": "offset points", "fontsize": 7, "path_effects": OUTLINED}
+    panel.annotate(text, point, apart, **outlined, **style)
 
 
 def _middle(curves):
@@ -241,8 +285,7 @@ def _name_flat_surfaces(panel, lengths):
     """Name the bounds of flat surfaces [µm] at the left end of the longest ones that are known."""
     first = lengths.isel(relative_humidity=0)
     if np.isfinite(first).any():
-        style = {"textcoords": "offset points", "fontsize": 7, "va": "bottom", "path_effects": OUTLINED}
-        panel.annotate("flat surfaces", (panel.dataLim.x0, float(first.max())), (2, 1), **style)
+        _write(panel, "flat surfaces", (panel.dataLim.x0, float(first.max())), (2, 1), va="bottom")
 
 
 def _explain_chart(panel, curves, shape):
@@ -257,10 +300,7 @@ def _explain_chart(panel, curves, shape):
 def _name_thicknesses(panel, chart_curves, marks):
     """Name every known curve of a chart to the right of its panel, at its last point but clear of the names below."""
     (low, high), below = panel.get_ylim(), -np.inf
-    curves = (TO_UM * chart_curves.safe_length.sel(share=_middle(chart_curves))).transpose(
-        "thickness", "relative_humidity"
-    )
-    finite = [curve[np.isfinite(curve)] for curve in curves.values]
+    finite = [curve[np.isfinite(curve)] for curve in _limits(chart_curves).values]
     named = zip(finite, chart_curves.thickness.values, shades(len(marks)), marks, strict=True)
     for curve, thickness, shade, mark in sorted(
         (entry for entry in named if len(entry[0])), key=lambda entry: entry[0][-1]
@@ -285,15 +325,15 @@ def _parts(curves, lines):
     return [(dataset, styles) for dataset, styles in parts if dataset.sizes["relative_humidity"]]
 
 
-def gap_of(section: Mapping[str, Any]) -> float:
-    """Gap of a device [m]."""
-    return section["gap_um"] * UM
+def own_sizes(section: Mapping[str, Any]) -> tuple[float, float]:
+    """Thickness and gap of a beam [m]."""
+    return section["thickness_um"] * UM, section["gap_um"] * UM
 
 
 def _chart(data, settings):
     """Figure of charts from their datasets, answers and limits."""
     answers = of_datasets(data["answers"], data["warnings"])
-    own = {name: (settings["gaps"][name], answer) for name, answer in answers.items()}
+    own = {name: (*settings["sizes"][name], answer) for name, answer in answers.items()}
     return chart(data["charts"], device_warnings.read(data["warnings"]).curves, own)
 
 
@@ -308,7 +348,7 @@ STAGES = (
             | {"warnings": device_warnings.files_of(*plan.devices.with_chart)}
         ),
         settings=lambda plan, at: {
-            "gaps": {name: gap_of(plan.devices.sections[name]) for name in plan.devices.with_chart}
+            "sizes": {name: own_sizes(plan.devices.sections[name]) for name in plan.devices.with_chart}
         },
         compute=_chart,
         jobs=lambda plan: [{}] if plan.devices.with_chart else [],

@@ -85,7 +85,7 @@ def _parts_of_beam(name, section, data, answer):
     if data.get("charts"):
         axis = _cases(name, data["charts"])
         cells = tables_devices.chart(axis, warnings).cells.drop(columns="device")
-        picture = figures_devices.chart(axis, warnings, {name: (figures_devices.gap_of(section), answer)})
+        picture = figures_devices.chart(axis, warnings, {name: (*figures_devices.own_sizes(section), answer)})
         sections.append(Section("Other thicknesses and humidities", (), cells, picture))
     texts_of_cases = [*sentences.few_sentences(lengths), *sentences.prediction_sentences(lengths)]
     listed = lines_with_numbers(warnings, sentences.shortest_warnings(section, answer))

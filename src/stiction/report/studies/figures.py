@@ -66,12 +66,12 @@ _LEGEND = 0.3
 
 #: What the sensitivities are of.
 _STATISTICS = ("mean", "standard deviation")
-#: Ticks at the slopes to less and to more of the moment, and their distance from their humidity [in].
-_ASIDE = 0.08
-_SIDES = {
-    "one-sided slopes of the mean: moment lower": {"marker": "1", "linestyle": "", "markersize": 6},
-    "one-sided slopes of the mean: moment higher": {"marker": "2", "linestyle": "", "markersize": 6},
-}
+#: Distance of the moments at a humidity from each other [in].
+_ASIDE = 0.06
+#: Line between the slopes to less and to more of a moment, and mark of the latter.
+_SIDES = {"linewidth": 0.8, "marker": ".", "markersize": 5}
+#: The same in words.
+_OF_SIDES = "one-sided slopes of the mean: moment down to moment up (dot)"
 
 
 @styled
@@ -89,8 +89,8 @@ def sensitivities(
         _slopes_of_pair(axes, of_pair, {tuple(at): slope for (name, *at), slope in published.items() if name == pair})
     names = [f", pair {pair}" for pair in pairs] if len(pairs) > 1 else [""]
     moments, names_of_moments = handles(lines[0, 1])
-    marks = [Line2D([], [], color="0.3", **style) for style in _SIDES.values()]
-    legend_outside(figure, (moments + marks, names_of_moments + list(_SIDES)), "lower", 3)
+    between = Line2D([], [], color="0.3", **_SIDES)
+    legend_outside(figure, ([*moments, between], [*names_of_moments, _OF_SIDES]), "lower", 3)
     letter(lines, [rf"{statistic} of $\bar e${name}" for name in names for statistic in _STATISTICS])
     return figure
 
@@ -101,28 +101,39 @@ def _slopes_of_pair(axes, datasets, published):
         for k, (moment, dataset) in enumerate(datasets.items()):
             chosen = dataset.sel(statistic=statistic)
             style = {"marker": marker(k), "linestyle": dashes(k), "label": f"{moment}, ± standard error"}
+            style |= {"color": f"C{k}", "transform": _aside(panel, k, len(datasets))}
             panel.errorbar(chosen.humidity, chosen.slope, chosen.standard_error, **style)
+            panel.update_datalim(np.c_[chosen.humidity, chosen.slope - chosen.standard_error])
+            panel.update_datalim(np.c_[chosen.humidity, chosen.slope + chosen.standard_error])
         panel.axhline(0, **_ZERO)
         panel.set(xlabel="relative humidity [–]", ylabel="normalised sensitivity [–]")
     for k, dataset in enumerate(datasets.values()):
-        for side, style, slopes in zip((-1, 1), _SIDES.values(), dataset.difference.values, strict=True):
-            transform = offset_copy(axes[0].transData, axes[0].figure, side * _ASIDE, 0)
-            axes[0].plot(dataset.humidity, slopes, color=f"C{k}", transform=transform, **style)
-            axes[0].update_datalim(np.c_[dataset.humidity, slopes])
-    axes[0].autoscale_view()
+        style = {"color": f"C{k}", "transform": _aside(axes[0], k, len(datasets)), "markevery": [1], **_SIDES}
+        for humidity, ends in zip(dataset.humidity.values, dataset.difference.values.T, strict=True):
+            axes[0].plot([humidity] * 2, ends, **style)
+            axes[0].update_datalim(np.c_[[humidity] * 2, ends])
     for (moment, humidity), slope in published.items():
         k = list(datasets).index(moment)
-        axes[0].plot(humidity, slope, marker(k), color=f"C{k}", markerfacecolor="none")
+        style = {"color": f"C{k}", "transform": _aside(axes[0], k, len(datasets)), "markerfacecolor": "none"}
+        axes[0].plot(humidity, slope, marker(k), **style)
+        axes[0].update_datalim([(humidity, slope)])
+    for panel in axes:
+        panel.autoscale_view()
     humidity_axis(axes[0])
     for (moment, humidity), slope in published.items():
-        _beside(axes[0], f"paper, {moment}", (humidity, slope))
+        _beside(axes[0], f"paper, {moment}", (humidity, slope), 5 + 36 * _ASIDE * (len(datasets) - 1))
 
 
-def _beside(panel, text, point):
-    """Note to the right of a point, or to the left of a point in the right half of a panel."""
+def _aside(panel, k, count):
+    """Transform of the data of moment ``k`` of some, beside the others at its humidity."""
+    return offset_copy(panel.transData, panel.figure, _ASIDE * (k - (count - 1) / 2), 0)
+
+
+def _beside(panel, text, point, apart):
+    """Note some points to the right of a point, or to the left of one in the right half of a panel."""
     side = -1 if point[0] > np.mean(panel.get_xlim()) else 1
     style = {"textcoords": "offset points", "ha": "left" if side > 0 else "right", "va": "center"}
-    panel.annotate(text, point, (5 * side, 0), **style)
+    panel.annotate(text, point, (apart * side, 0), path_effects=OUTLINED, **style)
 
 
 # Figure 16

@@ -12,11 +12,17 @@ class StuckState:
 
     by: str  #: what holds it, in tables
     legend: str = ""  #: the same in legends
+    only_if: str = ""  #: what has to be so for it to decide, where a stricter end state stands beside it
     lines: tuple[str, str] = ("", "")  #: styles of the lengths and of their bound in figures
     budget: str = ""  #: what the inputs of a budget move
     result: str = ""  #: the same beside test beams, with its unit
     safe: str = ""  #: what is safe against it
     terms: Mapping[str, str] = field(default_factory=dict)  #: terms that a page explains
+
+    @property
+    def title(self) -> str:
+        """What holds a device, in titles of panels."""
+        return f"{self.by}, {self.only_if}" if self.only_if else self.by
 
 
 #: End states by their name in datasets; of those of one device, the longest devices are in the first.
@@ -24,6 +30,7 @@ END_STATES = {
     S_SHAPE: StuckState(
         by="beam",
         legend="held by the beam",
+        only_if="only if its tip cannot touch",
         lines=("--", ":"),
         budget="mean length at which beams stick (S-shape)",
         result="crack length [µm]",
