@@ -140,6 +140,8 @@ surrogate: $(VENV)/ready
 	$(BIN)/python -m stiction.estimate.learning.bridges runs/surrogate
 	$(BIN)/python -m stiction.estimate.learning.dry runs/surrogate
 	$(BIN)/python -m stiction.estimate.learning.dry_patches runs/surrogate
+	$(BIN)/python -m stiction.estimate.learning.other_solids.attraction runs/surrogate
+	$(BIN)/python -m stiction.estimate.learning.other_solids.points runs/surrogate
 	$(BIN)/python -m stiction.estimate.learning.make runs/surrogate
 	$(BIN)/python -m stiction.estimate.page docs/_static/estimate.html
 	$(BIN)/python -m stiction.estimate.learning.held_out runs/surrogate docs/tables/safe_lengths.csv docs/tables/stoppers.csv \

@@ -18,8 +18,9 @@ from stiction.config.relations import schema
 from stiction.config.units import in_si
 from stiction.config.validation import checked
 from stiction.constants import WATER_MOLECULE
+from stiction.contact.air import MOLECULES
 from stiction.contact.environment import Water
-from stiction.contact.meniscus import BRIDGE, MOLECULES, humidity_at, least_humidity, meniscus_height
+from stiction.contact.meniscus import BRIDGE, humidity_at, least_humidity, meniscus_height
 from stiction.plan import devices
 from stiction.plan.devices import DevicePlan
 from stiction.plan.plan import Plan

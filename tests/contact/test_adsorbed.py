@@ -8,8 +8,9 @@ import small
 from numpy.testing import assert_allclose
 from scipy.optimize import brentq, minimize_scalar
 
+from stiction.constants import surface_energy
 from stiction.contact.environment import Gaps, Water, flooded_law, force_curves
-from stiction.contact.meniscus import Isotherm, film, laplace_pressure, surface_energy
+from stiction.contact.meniscus import Isotherm, film, laplace_pressure
 from stiction.stages.contact import curves
 from stiction.stages.contact.contact import tables
 

@@ -3,7 +3,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from stiction.constants import GAS_CONSTANT, WATER_MOLAR_VOLUME, WATER_MOLECULE, WATER_SURFACE_ENERGY
+from stiction.constants import (
+    GAS_CONSTANT,
+    WATER_MOLAR_VOLUME,
+    WATER_MOLECULE,
+    WATER_SURFACE_ENERGY,
+    molar_volume,
+    surface_energy,
+    tabulated_density,
+    tabulated_surface_tension,
+)
 from stiction.contact.meniscus import (
     STRENGTH,
     dry_air,
@@ -14,10 +23,6 @@ from stiction.contact.meniscus import (
     laplace_pressure,
     least_humidity,
     meniscus_height,
-    molar_volume,
-    surface_energy,
-    tabulated_density,
-    tabulated_surface_tension,
     vapour_pressure,
 )
 

@@ -8,11 +8,11 @@ from scipy.stats import norm
 
 from stiction.config.files import load
 from stiction.constants import WATER_MOLECULE
+from stiction.contact.air import MOLECULES
 from stiction.contact.environment import Water
 from stiction.contact.forcelaw import humid_curves
 from stiction.contact.meniscus import (
     BRIDGE,
-    MOLECULES,
     STRENGTH,
     film,
     flooded_energy,

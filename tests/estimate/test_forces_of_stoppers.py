@@ -24,7 +24,7 @@ from stiction.estimate.table import Surrogate, content, known
 from stiction.life.freeing import stuck_after
 
 STOPPER = {"kind": "stopper", "pair": "b", "contact_um": [3, 3], "humidities": [0.67], "restoring_force_uN": 60}
-WATER = film(0.67, 300.0, 2.0, (0.072, 1.8e-5))
+WATER = film(0.67, 300.0, 2.0)
 (POINT,) = SETS["control"].all
 AREA = "area in contact in summits"
 

@@ -169,6 +169,6 @@ def test_numbers_of_a_point_have_all_its_constants_and_full_contact_at_the_first
     numbers = dry.computed(point, "learn_any", dry.base())
     assert numbers["slopes"].shape == (2, 3, 4)
     np.testing.assert_array_equal(numbers["changed"], 2.0)
-    first = seen[0].config["materials"]["M"]["hamaker_constant_zJ"]["dry"]
+    first = seen[0].config["materials"]["OfS"]["hamaker_constant_zJ"]["dry"]
     assert first == pytest.approx(1e21 * dry.constants(point, "learn_any")[0])
     assert dry.SETS["check_paper"].law is SurfaceLaw.PAPER

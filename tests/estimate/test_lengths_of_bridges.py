@@ -32,9 +32,9 @@ from stiction.life.freeing import stuck_after
 
 BRIDGE = {"kind": "bridge", "pair": "b", "thickness_um": 2, "gap_um": 2, "width_um": 30, "residual_stress_MPa": 50}
 BRIDGE |= {"humidities": [0.67]}
-WATER = film(0.67, 300.0, 2.0, (0.072, 1.8e-5))
+WATER = film(0.67, 300.0, 2.0)
 (POINT,) = SETS["control"].all
-STATE = MiddleState(of_pair(POINT.sides), WATER, 2e-6, 2e-6, 30e-6, 50e6, 164e9)
+STATE = MiddleState(of_pair(POINT.sides), WATER, 2e-6, 2e-6, 30e-6, 50e6, 164e9, 164e9)
 BEAM = Beam(600e-6, 30e-6, 2e-6, 164e9, 2e-6, 160)
 STRESSES = [0.0, 10e6, 50e6, 200e6]
 

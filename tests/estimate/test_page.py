@@ -12,9 +12,12 @@ import pytest
 import stiction.estimate.table as table_of_estimate
 from stiction.estimate.answer import CONFIDENCES, answer
 from stiction.estimate.bridge import Bridge
+from stiction.estimate.closed.beams import DryingLiquid
+from stiction.estimate.closed.life import Surroundings
 from stiction.estimate.force import Stopper
 from stiction.estimate.length import NotLearnt
 from stiction.estimate.question import Question, surface
+from stiction.estimate.solids import SolidPair
 
 NODE = shutil.which("node")
 STATES = 200
@@ -25,9 +28,12 @@ const answers = input.questions.map((question) => {
   try { return answer({...question, ...sides(question)}, input.table); }
   catch (reason) { if (reason instanceof NotLearnt) return {unknown: reason.message}; throw reason; }
 });
-function sides({beams, substrate}) {
+function sides({beams, substrate, solids}) {
   const [stated, ...members] = beams.map((beam) => added(heights(beam), heights(substrate)));
-  return {stated, members};
+  return {stated, members, ...(solids ? {solids: solidsOf(solids)} : {})};
+}
+function solidsOf({modulus, beam_modulus: beamModulus, through_water: throughWater, in_dry_air: inDryAir, wetting}) {
+  return {modulus, beamModulus, throughWater, inDryAir, wetting};
 }
 console.log(JSON.stringify(answers));
 """
@@ -50,7 +56,22 @@ def drawn(rng, of_kind):
     airs, often = rng.uniform(0.4, 0.92, rng.choice([1, 2])).tolist(), int(rng.choice([1, 1000]))
     airs = [*airs[1:], 0.0] if rng.random() < 0.4 else airs
     asked = {"beams": beams, "substrate": substrate, "humidities": airs, "averaged": bool(rng.random() < 0.5)}
-    return asked | {"touchdowns": often, "constant": rng.uniform(1e-19, 3.5e-19)} | of_kind(rng)
+    return asked | {"touchdowns": often} | of_solids(rng) | of_kind(rng) | dried(rng)
+
+
+def dried(rng):
+    """Surface tension of a random liquid, zero without one [N/m]."""
+    return {"liquid": float(rng.choice([0, rng.uniform(0.01, 0.075)]))}
+
+
+def of_solids(rng):
+    """Nothing, or numbers of random solids and water, a few of which do not wet."""
+    if rng.random() < 0.3:
+        return {}
+    moduli = dict(zip(("modulus", "beam_modulus"), rng.uniform(60e9, 400e9, 2).tolist(), strict=True))
+    constants = {"through_water": rng.uniform(5e-21, 3e-19), "in_dry_air": rng.uniform(1e-19, 3.5e-19)}
+    solids = moduli | constants | {"wetting": float(rng.choice([-0.1, 2, rng.uniform(0.5, 2)], p=[0.1, 0.3, 0.6]))}
+    return {"solids": solids, "temperature": rng.uniform(275, 370)}
 
 
 def cantilever(rng):
@@ -83,18 +104,25 @@ def in_python(question, table):
         [surface(one, library)[0] for one in question["beams"]],
         surface(question["substrate"], library),
     )
-    own = {key: value for key, value in question.items() if key not in ("beams", "substrate", "humidities")}
+    own = {key: value for key, value in question.items() if key not in ("beams", "substrate", "humidities", "liquid")}
+    own["surroundings"] = Surroundings({"Mine": DryingLiquid(question["liquid"])} if question["liquid"] else {})
     named = {str(k): member for k, member in enumerate(members)}
     of = next((one for key, one in (("sides", Stopper), ("stress", Bridge)) if key in question), Question)
-    if of is Bridge:
-        own.pop("constant")  # counts in dry air alone, where bridges are refused
+    if "solids" in own:
+        own["solids"] = SolidPair(**own["solids"])
     asked = of("", (stated, other), (named, {}), tuple(question["humidities"]), **own)
     try:
         found = answer(asked, table, table_of_estimate.process("tips"), table_of_estimate.process("full"))
     except NotLearnt as reason:
         return str(reason)
     rows = [[row.size, *(end for name in CONFIDENCES for end in row.intervals[name])] for row in found.rows]
-    return [*np.ravel(rows), *found.stuck]
+    return [*np.ravel(rows), *found.stuck, *life_of(found)]
+
+
+def life_of(found):
+    """Lengths of beams that dry, and the shock: none of a stopper, to which the page gives no mass."""
+    dried = [length for each in found.dried.values() for length in each.lengths]
+    return [] if found.is_force else [*dried, found.touching.shock]
 
 
 def in_javascript(answers):
@@ -106,7 +134,8 @@ def in_javascript(answers):
             rows = [
                 [row["size"], *(end for name in CONFIDENCES for end in row["intervals"][name])] for row in found["rows"]
             ]
-            yield [*np.ravel(rows), *found["stuck"]]
+            life = [*(found["life"]["dried"] or []), found["life"]["shock"]] if found["life"] else []
+            yield [*np.ravel(rows), *found["stuck"], *life]
 
 
 @pytest.mark.skipif(NODE is None, reason="node is not on this machine")

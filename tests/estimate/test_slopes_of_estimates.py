@@ -32,11 +32,13 @@ def estimated(air):
 
     def logarithm(moved, change):
         """Logarithm of the length with one input changed."""
-        factor, (table, *processes) = math.exp(change), known()
-        stiff = table | {"modulus": factor * table["modulus"]} if moved == "Young's modulus" else table
+        factor = math.exp(change)
         sizes = {moved: factor * getattr(asked, moved)} if moved in ("thickness", "gap") else {}
+        if moved == "Young's modulus":
+            moduli = {name: factor * getattr(asked.solids, name) for name in ("modulus", "beam_modulus")}
+            sizes = {"solids": replace(asked.solids, **moduli)}
         wet = air + (change if moved == "humidity" else 0.0)
-        return math.log(in_one_air(replace(asked, **sizes), wet, [1e-3], stiff, *processes)[0].length)
+        return math.log(in_one_air(replace(asked, **sizes), wet, [1e-3], *known())[0].length)
 
     inputs = ("thickness", "gap", "Young's modulus", "humidity")
     return {name: (logarithm(name, STEP) - logarithm(name, -STEP)) / (2 * STEP) for name in inputs}

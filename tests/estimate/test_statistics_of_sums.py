@@ -1,5 +1,7 @@
 """Statistics that the estimate knows of surfaces and films: beside integrals, drawn heights and what a run reads."""
 
+import math
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -11,7 +13,6 @@ from stiction.beam.cantilever import Beam
 from stiction.config.reading import paper
 from stiction.config.surfaces.described import complete
 from stiction.config.surfaces.members import members
-from stiction.constants import WATER_MOLAR_VOLUME, WATER_SURFACE_ENERGY
 from stiction.contact import meniscus
 from stiction.devices.arcs import longest_free
 from stiction.estimate.length import NotLearnt
@@ -98,12 +99,12 @@ def test_a_surface_that_was_not_learnt_is_refused(entry):
         surface(entry, LIBRARY)
 
 
-@given(st.floats(0.3, 0.95), st.floats(0.2, 1))
-def test_a_film_is_the_meniscus_of_the_contact(humidity, cosine):
-    angle = float(np.arccos(cosine))
-    water = film(humidity, 300.0, 2 * cosine, (WATER_SURFACE_ENERGY, WATER_MOLAR_VOLUME))
-    assert water.height == pytest.approx(float(meniscus.meniscus_height(humidity, 300.0, (angle, angle))))
-    assert water.energy == pytest.approx(meniscus.flooded_energy(300.0, (angle, angle)))
+@given(st.floats(0.3, 0.95), st.floats(274, 372), st.floats(0, 1.5), st.floats(0, 1.5))
+def test_a_film_is_the_meniscus_of_the_contact(humidity, temperature, first, second):
+    angles = first, second
+    water = film(humidity, temperature, sum(map(math.cos, angles)))
+    assert water.height == pytest.approx(float(meniscus.meniscus_height(humidity, temperature, angles)))
+    assert water.energy == pytest.approx(meniscus.flooded_energy(temperature, angles))
 
 
 @given(st.floats(1, 4), st.floats(2, 40))

@@ -18,9 +18,10 @@ from stiction.config.mission.adsorption import adsorbed_heights
 from stiction.config.mission.conditions import CONDITIONS, humidity_of_air, temperatures
 from stiction.config.reading import is_stated
 from stiction.config.units import NM_PER_UM, from_si, to_si
-from stiction.contact.air import has_dry, humid
+from stiction.constants import ZERO_CELSIUS
+from stiction.contact.air import MOLECULES, has_dry, humid
 from stiction.contact.materials import COATING
-from stiction.contact.meniscus import BRIDGE, MOLECULES, ZERO_CELSIUS, dry_air, is_wetted, meniscus_height
+from stiction.contact.meniscus import BRIDGE, dry_air, is_wetted, meniscus_height
 from stiction.devices.limits import rules
 from stiction.models import SIDES
 from stiction.rounding import is_at_most

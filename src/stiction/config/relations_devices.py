@@ -38,9 +38,8 @@ from stiction.config.relations import (
 from stiction.config.surfaces import process as process_surfaces
 from stiction.config.test_beams import DATA, pair_of, shared_uncertainty
 from stiction.config.units import NM_PER_UM, from_si, in_si, to_si
-from stiction.contact.air import Air, humid, is_humid
+from stiction.contact.air import MOLECULES, Air, humid, is_humid
 from stiction.contact.materials import COATING_ATTRACTION, COHERENCE, OF_CONTACT, OF_REPLICAS, PLAY
-from stiction.contact.meniscus import MOLECULES
 from stiction.contact.probes.shape import RISE, Probe
 from stiction.contact.tilt import EDGE_RADIUS, Edge
 from stiction.rounding import is_at_most

@@ -15,6 +15,13 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 #: Word for the humidity of dry air in configurations, and the medium of attraction in it.
 DRY = "dry"
+#: ASSUME: fewest molecules across a film that is a liquid: one adsorbed on each solid, and one between them. On silica
+#: the first three layers, which grow up to RH 0.3, are ordered as in ice, and only those beyond are liquid (Asay and
+#: Kim, J. Phys. Chem. B 109, 16760, 2005); on mica, water is solid-like between RH 0.2 and 0.4 (Hu, Xiao, Ogletree and
+#: Salmeron, Surf. Sci. 344, 221, 1995). Eqs. (8) and (9) give thinner films a tension that grows without limit.
+MOLECULES = 3
+#: Rounding of the sum of two cosines that are opposite to each other.
+ROUNDING = 1e-9
 #: Both kinds of air. A pair has one contact in all air of a kind.
 KINDS_OF_AIR = ("humid", DRY)
 

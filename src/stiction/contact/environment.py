@@ -23,10 +23,10 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.contact import forcelaw, gaps, vanderwaals
-from stiction.contact.air import Air
+from stiction.contact.air import MOLECULES, Air
 from stiction.contact.correction import NONE, Correction, ElasticChange
 from stiction.contact.materials import Solid
-from stiction.contact.meniscus import BRIDGE, MOLECULES, Isotherm, film
+from stiction.contact.meniscus import BRIDGE, Isotherm, film
 from stiction.contact.solids import attraction_between, interfaces
 from stiction.contact.voltage import Capacitor
 from stiction.models import SIDES

@@ -9,15 +9,15 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from stiction.constants import HAMAKER_CONSTANT, HARDNESS
+from stiction.constants import HAMAKER_CONSTANT, HARDNESS, POISSON_RATIO, YOUNG_MODULUS
 
 
 @dataclass(frozen=True)
 class Solid:
     """Material of one body. Polysilicon unless stated otherwise."""
 
-    young_modulus: float = 164e9  #: E [Pa]
-    poisson_ratio: float = 0.23  #: ν [-]
+    young_modulus: float = YOUNG_MODULUS  #: E [Pa]
+    poisson_ratio: float = POISSON_RATIO  #: ν [-]
     hardness: float = HARDNESS  #: σ_H [Pa]
     #: Hamaker constant of two bodies of this material through each medium [J]
     hamaker_constant: Mapping[str, float] = field(default_factory=lambda: dict(HAMAKER_CONSTANT))

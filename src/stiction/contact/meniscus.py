@@ -1,43 +1,22 @@
-r"""Water condensed between two surfaces (Sec. III-A1, capillary forces). The paper's wet perfectly.
-
-ASSUME: the surface energy and the molar volume of water vary with temperature as measured, and are those of the paper
-at its 300 K: a published correlation gives only their ratio to 300 K. The paper rounds both (72 mN/m, 18 cm³/mol; the
-correlations give 71.7 and 18.08), and its numbers are to be reproduced.
-"""
+r"""Water condensed between two surfaces (Sec. III-A1, capillary forces). The paper's wet perfectly."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from stiction.constants import GAS_CONSTANT, WATER_MOLAR_VOLUME, WATER_MOLECULE, WATER_SURFACE_ENERGY
-from stiction.contact.air import is_humid, is_possible
+from stiction.constants import CRITICAL, GAS_CONSTANT, WATER_MOLECULE, molar_volume, surface_energy
+from stiction.contact.air import MOLECULES, ROUNDING, is_humid, is_possible
 
-#: ASSUME: fewest molecules across a film that is a liquid: one adsorbed on each solid, and one between them. On silica
-#: the first three layers, which grow up to RH 0.3, are ordered as in ice, and only those beyond are liquid (Asay and
-#: Kim, J. Phys. Chem. B 109, 16760, 2005); on mica, water is solid-like between RH 0.2 and 0.4 (Hu, Xiao, Ogletree and
-#: Salmeron, Surf. Sci. 344, 221, 1995). Eqs. (8) and (9) give thinner films a tension that grows without limit.
-MOLECULES = 3
 #: ASSUME: fewest molecules across a meniscus. Water that is thinner bridges no gap.
 BRIDGE = 1
 #: ASSUME: largest tension of films that are no liquid [Pa], above the 140 MPa that water in quartz bore (Zheng et al.,
 #: Science 254, 829, 1991). Films of three molecules have less from 0 °C on.
 STRENGTH = 180e6
-#: Rounding of the sum of two cosines that are opposite to each other.
-_ROUNDING = 1e-9
-#: 0 °C [K], exact; SI.
-ZERO_CELSIUS = 273.15
-#: Temperature of the paper [K].
-_REFERENCE = 300.0
-#: Critical temperature of water [K]; IAPWS R1-76(2014).
-_CRITICAL = 647.096
 #: Critical pressure of water [Pa], factors and powers of its vapour pressure; W. Wagner and A. Pruss, J. Phys. Chem.
 #: Ref. Data 22, 783 (1993).
 _CRITICAL_PRESSURE = 22.064e6
 _VAPOUR = np.array([-7.85951783, 1.84408259, -11.7866497, 22.6807411, -15.9618719, 1.80122502])
 _POWERS = np.array([1, 1.5, 3, 3.5, 4, 7.5])
-#: Density of water, Kell (1975), J. Chem. Eng. Data 20, 97: numerator and denominator, in powers of t [°C]; [kg m⁻³].
-_MASS = (999.83952, 16.945176, -7.9870401e-3, -46.170461e-6, 105.56302e-9, -280.54253e-12)
-_EXPANSION = (1.0, 16.879850e-3)
 
 
 @dataclass(frozen=True)
@@ -72,33 +51,6 @@ class Isotherm:
         return float(2 * segments.sum() / -np.log(humidity))
 
 
-def tabulated_surface_tension(temperature: float) -> float:
-    r"""Surface tension of water, IAPWS release R1-76(2014) [N m⁻¹]. Temperature [K].
-
-    .. math:: \gamma = B \tau^\mu (1 + b \tau), \quad \tau = 1 - T / T_c
-
-    Examples
-    --------
-    >>> round(1e3 * tabulated_surface_tension(298.15), 2)  # mN/m
-    71.97
-    """
-    tau = 1 - temperature / _CRITICAL
-    return 0.2358 * tau**1.256 * (1 - 0.625 * tau)
-
-
-def tabulated_density(temperature: float) -> float:
-    """Density of air-free water at atmospheric pressure, Kell (1975), from 0 to 150 °C [kg m⁻³]. Temperature [K].
-
-    Examples
-    --------
-    >>> round(tabulated_density(298.15), 1)
-    997.0
-    """
-    celsius = temperature - ZERO_CELSIUS
-    mass, expansion = (np.polynomial.polynomial.polyval(celsius, powers) for powers in (_MASS, _EXPANSION))
-    return float(mass / expansion)
-
-
 def vapour_pressure(temperature: float) -> float:
     r"""Saturation pressure of the vapour over water, Wagner and Pruss (1993) [Pa]. Temperature [K].
 
@@ -111,23 +63,13 @@ def vapour_pressure(temperature: float) -> float:
     >>> round(vapour_pressure(293.15))
     2339
     """
-    tau = 1 - temperature / _CRITICAL
-    return float(_CRITICAL_PRESSURE * np.exp(_CRITICAL / temperature * (_VAPOUR @ tau**_POWERS)))
+    tau = 1 - temperature / CRITICAL
+    return float(_CRITICAL_PRESSURE * np.exp(CRITICAL / temperature * (_VAPOUR @ tau**_POWERS)))
 
 
 def humidity_at(temperature: float, dew_point: float) -> float:
     """Relative humidity of air at a temperature from its dew point [-]. Both in K. At least 1 where water condenses."""
     return vapour_pressure(dew_point) / vapour_pressure(temperature)
-
-
-def surface_energy(temperature: float) -> float:
-    """Liquid-vapour surface energy γ_LG of water, at 300 K exactly the paper's [N m⁻¹]. Temperature [K]."""
-    return WATER_SURFACE_ENERGY * (tabulated_surface_tension(temperature) / tabulated_surface_tension(_REFERENCE))
-
-
-def molar_volume(temperature: float) -> float:
-    """Molar volume V_m of liquid water, at 300 K exactly the paper's [m³ mol⁻¹]. Temperature [K]."""
-    return WATER_MOLAR_VOLUME * (tabulated_density(_REFERENCE) / tabulated_density(temperature))
 
 
 def laplace_pressure(humidity: float | np.ndarray, temperature: float) -> float | np.ndarray:
@@ -283,7 +225,7 @@ def is_wetted(contact_angles: tuple[float, float]) -> bool:
     >>> is_wetted((0.0, 0.0)), is_wetted((np.pi / 2, np.pi / 2)), is_wetted((0.1, 3.0))
     (True, False, True)
     """
-    return bool(np.cos(contact_angles).sum() > _ROUNDING)
+    return bool(np.cos(contact_angles).sum() > ROUNDING)
 
 
 def _wetting(contact_angles):

@@ -31,8 +31,8 @@ is at rest.
 import numpy as np
 
 from stiction.constants import WATER_MOLECULE
+from stiction.contact.air import MOLECULES
 from stiction.contact.forcelaw import limit_distance, resists
-from stiction.contact.meniscus import MOLECULES
 from stiction.kernels import kernel
 
 #: Height of the thinnest water with the tension of a liquid [m].

@@ -17,10 +17,14 @@ rest is learnt.
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any
 
 from stiction.config.units import to_si
-from stiction.estimate.length import LengthRow, Lengths, NotLearnt, falling, known_at, most_after
+from stiction.estimate.asked import Asked
+from stiction.estimate.closed.beams import SlenderBeam
+from stiction.estimate.closed.bending import end_stiffness
+from stiction.estimate.closed.life import BeamLife
+from stiction.estimate.length import LengthRow, Lengths, NotLearnt, falling, known_at, of_solids
 from stiction.estimate.state import OF_PATCHES, Film, PatchState
 from stiction.estimate.statistics import Heights
 from stiction.estimate.table import Surrogate
@@ -33,23 +37,8 @@ COORDINATES = (
     "gap over the film of water (from gap and humidity)",
     "stress over the middle in contact (from stress and thickness)",
 )
-#: Below this kL, as `stiction.beam.tension.SLACK`.
-_SLACK = 0.03
 #: Steps to a length under stress, each of which leaves at most 5/8 of the error of its logarithm.
 _STEPS = 60
-
-
-def end_stiffness(kl: float) -> tuple[float, float]:
-    """Stiffnesses F and M of half of a bridge, of the length L and under a tension of kL [-].
-
-    Examples
-    --------
-    >>> [round(value, 6) for value in (*end_stiffness(0.0), *end_stiffness(0.029))]
-    [12.0, 6.0, 12.001009, 6.000084]
-    """
-    mean = math.tanh(kl / 2) / (kl / 2) if kl else 1.0
-    force = 12 / (1 - kl**2 / 10 + 17 * kl**4 / 1680) if kl < _SLACK else kl**2 / (1 - mean)
-    return force, force * mean / 2
 
 
 @dataclass(frozen=True)
@@ -93,7 +82,9 @@ class MiddleState:
     gap: float  #: h [m]
     width: float  #: w [m]
     stress: float  #: [Pa]
-    modulus: float  #: E of the bridge and of the solids [Pa]
+    modulus: float  #: E of the bridge [Pa]
+    modulus_in_contact: float  #: E of the solids [Pa]
+    attraction: float = 1.0  #: r of `stiction.estimate.solids` [-]
 
     @property
     def flooded_length(self) -> float:
@@ -108,11 +99,16 @@ class MiddleState:
         return 8 * self.modulus * self.thickness**3 * self.gap / (self.flooded_length**3 * tension)
 
     @property
+    def patch(self) -> PatchState:
+        """Middle in contact."""
+        area = self.width * self._width_in_contact
+        return PatchState(self.heights, self.film, area, self.modulus_in_contact, self.attraction)
+
+    @property
     def coordinates(self) -> tuple[float, ...]:
         """Numbers on which its length over that on flooded flats depends, by ``COORDINATES``."""
-        contact = self._width_in_contact
-        patch = PatchState(self.heights, self.film, self.width * contact, self.modulus)
-        return (*patch.coordinates, math.log(self.gap / self.film.height), self.stretched.decay * contact)
+        gap, stress = math.log(self.gap / self.film.height), self.stretched.decay * self._width_in_contact
+        return (*self.patch.coordinates, gap, stress)
 
     @property
     def stretched(self) -> Stretched:
@@ -120,8 +116,12 @@ class MiddleState:
         return Stretched.of(self.stress, self.thickness, self.modulus)
 
 
-def lengths(state: MiddleState, middle: Surrogate, full: Surrogate) -> Lengths:
-    """Lengths without stress that are held as well as those under it [m].
+#: Power with which lengths change as reciprocals of forces. ASSUME: on other solids energies change as forces.
+_POWER = 1 / 4
+
+
+def lengths(state: MiddleState, middle: Surrogate, full: Surrogate, attraction: Surrogate | None = None) -> Lengths:
+    """Lengths without stress that are held as well as those under it [m]. The attraction is that of stoppers.
 
     Raises
     ------
@@ -129,7 +129,8 @@ def lengths(state: MiddleState, middle: Surrogate, full: Surrogate) -> Lengths:
         If the state is beyond what was learnt.
     """
     change, values = (known_at(process, state.coordinates, COORDINATES) for process in (full, middle))
-    return changed(falling(values, math.log(state.flooded_length)), change["shift"], change["power"])
+    summits = falling(of_solids(values, state.patch, attraction, _POWER), math.log(state.flooded_length))
+    return changed(summits, change["shift"], change["power"])
 
 
 def changed(summits: Lengths, shift: float, power: float) -> Lengths:
@@ -141,22 +142,14 @@ def changed(summits: Lengths, shift: float, power: float) -> Lengths:
 
 
 @dataclass(frozen=True)
-class Bridge:
+class Bridge(Asked):
     """Question about one bridge."""
 
-    name: str
-    surfaces: tuple[Heights, Heights]  #: as stated
-    members: tuple[dict[str, Heights], dict[str, Heights]]  #: as of `stiction.estimate.question.Question`
-    humidities: tuple[float, ...]  #: [-]
     thickness: float  #: [m]
     gap: float  #: [m]
     width: float  #: [m]
     stress: float  #: [Pa]
     length: float | None = None  #: [m]
-    touchdowns: int = 1
-    left_out: tuple[str, ...] = ()  #: keys that a run would read as well
-    averaged: bool = False
-    unit: ClassVar[str] = "um"  #: of its size, a length
 
     @property
     def size(self) -> float | None:
@@ -164,18 +157,15 @@ class Bridge:
         return self.length
 
     @property
-    def most(self) -> float:
-        """Largest fraction that is known after all touchdowns [-]."""
-        return most_after(self.touchdowns)
+    def closed(self) -> Stretched:
+        """Closed form of its lengths, from those without stress."""
+        return Stretched.of(self.stress, self.thickness, self.solids.beam_modulus)
 
     @property
-    def stated(self) -> float | None:
-        """Its length [m]."""
-        return self.length
-
-    def closed(self, modulus: float) -> Stretched:
-        """Closed form of its lengths, from those without stress."""
-        return Stretched.of(self.stress, self.thickness, modulus)
+    def life(self) -> BeamLife:
+        """Its life."""
+        sizes = self.thickness, self.gap, self.width, self.solids.beam_modulus
+        return BeamLife(SlenderBeam(2, *sizes, self.stress), self.surroundings)
 
     def errors(self, table: Mapping[str, Any]) -> Mapping[str, Any]:
         """Part of the table with the errors of its lengths."""
@@ -185,8 +175,10 @@ class Bridge:
         """Lengths without stress that are held as well as those that its middle holds, on the sum of two surfaces."""
         self._refuse(table["bridges"]["ranges"])
         sizes = self.thickness, self.gap, self.width, self.stress
-        learnt = (Surrogate(**table["bridges"][name]) for name in ("middle", "full"))
-        return lengths(MiddleState(heights, water, *sizes, table["modulus"]), *learnt)
+        solids, attraction = self.solids, self.solids.attraction(water.energy)
+        state = MiddleState(heights, water, *sizes, solids.beam_modulus, solids.modulus, attraction)
+        learnt = (table["bridges"]["middle"], table["bridges"]["full"], table["stoppers"]["attraction"])
+        return lengths(state, *(Surrogate(**each) for each in learnt))
 
     def in_dry_air(self, _heights: Heights, _table: Mapping[str, Any]) -> Lengths:
         """Lengths in dry air, which are not known."""

@@ -14,20 +14,16 @@ the upper end that a run applies.
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
-from stiction.config.units import to_si
-from stiction.constants import HAMAKER_CONSTANT, MOLECULAR_DISTANCE
-from stiction.contact.air import DRY
-from stiction.estimate.length import OF_FORCES, SCORES, Lengths, NotLearnt, falling, known_at
+from stiction.constants import MOLECULAR_DISTANCE
+from stiction.estimate.length import OF_FORCES, SCORES, Lengths, falling, known_at
 from stiction.estimate.state import curvature
 from stiction.estimate.statistics import Heights
 from stiction.estimate.table import Surrogate
 
-#: Hamaker constant of polysilicon through dry air [J].
-POLYSILICON = HAMAKER_CONSTANT[DRY]
 #: Distance D₀ of solids at rest [m]: `stiction.contact.vanderwaals.DugdaleAttraction`.
 AT_REST = (2 / 15) ** (1 / 6) * MOLECULAR_DISTANCE
 #: Names of the coordinates, for messages: of both, of a beam and of a stopper.
@@ -53,7 +49,7 @@ def work_of(constant: float) -> float:
 
     Examples
     --------
-    >>> round(work_of(POLYSILICON), 3)
+    >>> round(work_of(18.65e-20), 3)  # polysilicon
     0.166
     """
     return constant / (16 * math.pi * AT_REST**2)
@@ -133,14 +129,14 @@ def lengths(tip: DryTip, gap: float, tips: Surrogate, full: Surrogate) -> Length
     NotLearnt
         If the tip is beyond what was learnt.
     """
-    found = _on_summits(tip, gap, tips)
+    distribution = _on_summits(tip, gap, tips)
     power = 1.0
     for _ in range(2):
-        change = known_at(full, tip.at(1.5 * gap / found.at(SCORES[-1])).coordinates, tip.names)
-        power, scatter = max(1.0, change["power"]), OF_FORCES * found.fall
+        change = known_at(full, tip.at(1.5 * gap / distribution.at(SCORES[-1])).coordinates, tip.names)
+        power, scatter = max(1.0, change["power"]), OF_FORCES * distribution.fall
         factor = math.exp(change["ratio"] + (1 - power**2) * scatter**2 / 2)
-        found = _on_summits(replace(tip, stiffness=tip.stiffness / factor), gap, tips)
-    return scattered(found, power)
+        distribution = _on_summits(replace(tip, stiffness=tip.stiffness / factor), gap, tips)
+    return scattered(distribution, power)
 
 
 def _on_summits(tip, gap, tips):
@@ -148,10 +144,12 @@ def _on_summits(tip, gap, tips):
     return falling(known_at(tips, tip.coordinates, tip.names), math.log(1.5 * gap / tip.flat_slope))
 
 
-def scattered(found: Lengths, power: float, shift: float = 0.0) -> Lengths:
+def scattered(distribution: Lengths, power: float, shift: float = 0.0) -> Lengths:
     """Lengths whose logarithms scatter more by a power, around a shifted median."""
-    median = found.logarithms[0]
-    return Lengths(tuple(median + shift + power * (each - median) for each in found.logarithms), power * found.slope)
+    median = distribution.logarithms[0]
+    return Lengths(
+        tuple(median + shift + power * (each - median) for each in distribution.logarithms), power * distribution.slope
+    )
 
 
 def reciprocals(patch: DryPatch, forces: Surrogate, full: Surrogate) -> Lengths:
@@ -163,32 +161,10 @@ def reciprocals(patch: DryPatch, forces: Surrogate, full: Surrogate) -> Lengths:
         If the patch is beyond what was learnt.
     """
     change, values = (known_at(process, patch.coordinates, patch.names) for process in (full, forces))
-    found, power = falling(values, -math.log(patch.flat_force)), max(1.0, change["power"])
-    return scattered(found, power, -change["ratio"] - (1 - power**2) * found.fall**2 / 2)
+    distribution, power = falling(values, -math.log(patch.flat_force)), max(1.0, change["power"])
+    return scattered(distribution, power, -change["ratio"] - (1 - power**2) * distribution.fall**2 / 2)
 
 
-def processes(part: Mapping[str, Any], *names: str) -> tuple[Surrogate, ...]:
+def processes(section: Mapping[str, Any], *names: str) -> tuple[Surrogate, ...]:
     """Processes of a part of the table by name."""
-    return tuple(Surrogate(**part[name]) for name in names)
-
-
-def constant_of(surfaces: Sequence[Mapping[str, Any]], materials: Mapping[str, Any]) -> float:
-    """Hamaker constant of the solids of two surfaces in dry air, `stiction.contact.vanderwaals.combined` [J].
-
-    Raises
-    ------
-    NotLearnt
-        If a material differs from polysilicon in more.
-    """
-    return math.prod(_of_material(surface, materials) for surface in surfaces) ** 0.5
-
-
-def _of_material(surface, materials):
-    """Hamaker constant of two solids like that of a surface [J]."""
-    if "material" not in surface:
-        return POLYSILICON
-    stated = materials.get(surface["material"])
-    if stated is None or (others := [key for key in stated if key != "hamaker_constant_zJ"]):
-        what = surface["material"] if stated is None else f"{others[0]} of {surface['material']}"
-        raise NotLearnt(f"{what} was not learnt, of materials the Hamaker constant in dry air alone")
-    return to_si(stated["hamaker_constant_zJ"][DRY], "zJ")
+    return tuple(Surrogate(**section[name]) for name in names)

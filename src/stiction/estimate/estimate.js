@@ -25,9 +25,30 @@ function added(one, other) {
 }
 
 // state
+const REFERENCE = 300, THINNEST = 3 * 2.8e-10;
+function surfaceTension(temperature) {
+  const tau = 1 - temperature / 647.096;
+  return 0.2358 * tau ** 1.256 * (1 - 0.625 * tau);
+}
+function density(temperature) {
+  const polynomial = (factors) => factors.reduceRight((total, factor) => factor + total * (temperature - 273.15), 0);
+  return polynomial([999.83952, 16.945176, -7.9870401e-3, -46.170461e-6, 105.56302e-9, -280.54253e-12]) / polynomial([1, 16.879850e-3]);
+}
 function film(humidity, temperature, wetting, [tension, volume]) {
-  const energy = tension * wetting;
-  return {height: energy * volume / (-GAS * temperature * Math.log(humidity)), energy};
+  const energy = tension * surfaceTension(temperature) / surfaceTension(REFERENCE) * wetting;
+  const height = energy * volume * density(REFERENCE) / density(temperature) / (-GAS * temperature * Math.log(humidity));
+  if (height < THINNEST) throw new NotLearnt("the film of water is too thin to be a liquid: state a higher humidity, or dry");
+  return {height, energy};
+}
+
+// solids
+const POLYSILICON = {modulus: 164e9, beamModulus: 164e9, throughWater: 9.75e-20, inDryAir: 1.865e-19, wetting: 2}, ROUNDING = 1e-9;
+const attractionOf = (solids, {energy}, [tension]) => solids.throughWater / POLYSILICON.throughWater * (POLYSILICON.wetting * tension / energy);
+function ofSolids(values, state, place, {process, names}, power = 1) {
+  const by = Math.log(state.attraction);
+  if (!by) return values;
+  const byOne = known(process, [...place, by], [...names, "attraction of the solids beside that of the water (from Hamaker constant and contact angles)"]);
+  return {...values, ...Object.fromEntries(["at_0", "at_1", "at_2"].map((name) => [name, values[name] + power * by * byOne[name]]))};
 }
 const curvature = ({moments: [, second, fourth]}) => Math.sqrt(fourth / second);
 const tensionOf = ({height, energy}) => energy / height;
@@ -75,7 +96,8 @@ function falling(values, shift) {
   return {logarithms: [first, second, third], slope: Math.max(LEAST, values.slope)};
 }
 function onSummits(state, gap, table) {
-  return falling(known(table.tips, coordinates(state), table.coordinates), Math.log(1.5 * gap / floodedSlope(state)));
+  const place = coordinates(state), names = table.coordinates, learnt = {process: table.attraction, names};
+  return falling(ofSolids(known(table.tips, place, names), state, place, learnt), Math.log(1.5 * gap / floodedSlope(state)));
 }
 function lengthAt({logarithms: [first, second, third], slope}, score) {
   const [, b, c] = SCORES;
@@ -100,9 +122,10 @@ function lengths(state, gap, table) {
 }
 
 // force: its reciprocal stands for a length
-function reciprocals(patch, {forces, full, coordinates: names}) {
+function reciprocals(patch, {forces, full, attraction, coordinates: names}) {
   const place = ofPatch(patch), {ratio, power} = known(full, place, names);
-  return changedBy(falling(known(forces, place, names), -Math.log(tensionOf(patch.film) * patch.area)), ratio, Math.max(1, power));
+  const values = ofSolids(known(forces, place, names), patch, place, {process: attraction, names});
+  return changedBy(falling(values, -Math.log(tensionOf(patch.film) * patch.area)), ratio, Math.max(1, power));
 }
 function changedBy({logarithms, slope}, ratio, power) {
   const [median, , last] = logarithms, scatter = (median - last) / 2;
@@ -111,7 +134,7 @@ function changedBy({logarithms, slope}, ratio, power) {
 }
 
 // dry air
-const AT_REST = (2 / 15) ** (1 / 6) * 2.09e-10, POLYSILICON = 1.865e-19;
+const AT_REST = (2 / 15) ** (1 / 6) * 2.09e-10;
 const workOf = (constant) => constant / (16 * Math.PI * AT_REST ** 2), slopeOf = ({rms, moments}) => rms * Math.sqrt(moments[1]);
 function ofDryContact({heights, constant, modulus}) {
   const [low, second, fourth] = heights.moments;
@@ -144,15 +167,16 @@ function dryReciprocals(patch, {forces, full, coordinates: names}) {
   const scatter = (found.logarithms[0] - found.logarithms[2]) / 2;
   return scattered(found, power, -change.ratio - (1 - power ** 2) * scatter ** 2 / 2);
 }
-function ofStopper({sides, force, constant = POLYSILICON}, {modulus, stoppers, dry}) {
-  const [one, other] = sides;
+function ofStopper({sides, force, solids = POLYSILICON}, {water: ofWater, stoppers, dry}) {
+  const [one, other] = sides, {modulus} = solids;
   const areaOf = ({sides: [low, high]}) => {
     if (!sides.every((side) => low * 1e-6 <= side && side <= high * 1e-6)) throw new NotLearnt(`sides of a stopper must be from ${low} to ${high} µm`);
     return one * other;
   };
   return {
-    lengths: (heights, water) => reciprocals({heights, film: water, area: areaOf(stoppers), modulus}, stoppers),
-    inDryAir: (heights) => dryReciprocals({heights, constant, area: areaOf(dry.stoppers), modulus}, dry.stoppers),
+    lengths: (heights, water) =>
+      reciprocals({heights, film: water, area: areaOf(stoppers), modulus, attraction: attractionOf(solids, water, ofWater)}, stoppers),
+    inDryAir: (heights) => dryReciprocals({heights, constant: solids.inDryAir, area: areaOf(dry.stoppers), modulus}, dry.stoppers),
     closed: drivenBy(0), errors: (part) => part.stoppers, stated: force && 1 / force,
     row: ({length, intervals}) => ({size: 1 / length, intervals: Object.fromEntries(Object.entries(intervals).map(([key, [low, high]]) => [key, [1 / high, 1 / low]]))}),
   };
@@ -178,17 +202,23 @@ function stretchedBy(stress, thickness, modulus) {
 function floodedLength({film, thickness, gap, modulus}) {
   return (768 * (modulus * thickness ** 3) ** 2 * gap ** 3 / (film.energy ** 2 / film.height)) ** 0.125;
 }
-function ofMiddle(state, {decay}) {
-  const contact = 8 * state.modulus * state.thickness ** 3 * state.gap / (floodedLength(state) ** 3 * tensionOf(state.film));
-  return [...ofPatch({...state, area: state.width * contact}), Math.log(state.gap / state.film.height), decay * contact];
+function contactOf(state) {
+  return 8 * state.modulus * state.thickness ** 3 * state.gap / (floodedLength(state) ** 3 * tensionOf(state.film));
 }
-function lengthsOfBridge(state, closed, {middle, full, coordinates: names}) {
+const middleOf = (state) => ({...state, area: state.width * contactOf(state), modulus: state.inContact});
+function ofMiddle(state, {decay}) {
+  const contact = contactOf(state);
+  return [...ofPatch(middleOf(state)), Math.log(state.gap / state.film.height), decay * contact];
+}
+function lengthsOfBridge(state, closed, {middle, full, coordinates: names}, stoppers) {
   const place = ofMiddle(state, closed), {shift, power} = known(full, place, names);
-  const {logarithms, slope} = falling(known(middle, place, names), Math.log(floodedLength(state))), [median] = logarithms;
+  const learnt = {process: stoppers.attraction, names: stoppers.coordinates};
+  const values = ofSolids(known(middle, place, names), state, ofPatch(middleOf(state)), learnt, 1 / 4);
+  const {logarithms, slope} = falling(values, Math.log(floodedLength(state))), [median] = logarithms;
   return {logarithms: logarithms.map((each) => median + shift + power * (each - median)), slope: power * slope};
 }
-function ofBridge({thickness, gap, width, stress, length}, {modulus, bridges}) {
-  const closed = stretchedBy(stress, thickness, modulus);
+function ofBridge({thickness, gap, width, stress, length, solids = POLYSILICON}, {water: ofWater, bridges, stoppers}) {
+  const modulus = solids.beamModulus, closed = stretchedBy(stress, thickness, modulus);
   return {
     lengths: (heights, water) => {
       const sizes = {thickness, gap, width, stress};
@@ -196,23 +226,145 @@ function ofBridge({thickness, gap, width, stress, length}, {modulus, bridges}) {
         const outside = !(low * UNITS[unit] <= sizes[name] && sizes[name] <= high * UNITS[unit]), symbol = unit.replace("u", "µ");
         if (outside) throw new NotLearnt(`the ${name} of a bridge must be from ${low} to ${high} ${symbol}`);
       }
-      return lengthsOfBridge({heights, film: water, thickness, gap, width, modulus}, closed, bridges);
+      const attraction = attractionOf(solids, water, ofWater);
+      return lengthsOfBridge({heights, film: water, thickness, gap, width, modulus, inContact: solids.modulus, attraction}, closed, bridges, stoppers);
     },
     inDryAir: () => { throw new NotLearnt("a bridge was not learnt in dry air"); },
     closed, errors: (part) => part.bridges, stated: length, row: ({length, intervals}) => ({size: length, intervals}),
   };
 }
-function ofCantilever({thickness, gap, width, length, added, constant = POLYSILICON}, table) {
-  const stiffness = table.modulus * thickness ** 3 / gap ** 2;
+function ofCantilever({thickness, gap, width, length, added, solids = POLYSILICON}, table) {
+  const stiffness = solids.beamModulus * thickness ** 3 / gap ** 2, {modulus} = solids;
   return {
-    lengths: (heights, water) => lengths({heights, film: water, stiffness, width, modulus: table.modulus}, gap, table),
-    inDryAir: (heights) => dryLengths({heights, constant, stiffness, width, modulus: table.modulus}, gap, table.dry),
+    lengths: (heights, water) => lengths({heights, film: water, stiffness, width, modulus, attraction: attractionOf(solids, water, table.water)}, gap, table),
+    inDryAir: (heights) => dryLengths({heights, constant: solids.inDryAir, stiffness, width, modulus}, gap, table.dry),
     closed: drivenBy(8 * (added || 0) / (3 * stiffness * gap ** 4)), errors: (part) => part, stated: length,
     row: ({length, intervals}) => {
       if (length <= Math.max(thickness, gap)) throw new NotLearnt("it sticks even at a length below its gap or thickness: change voltage or dielectric");
       return {size: length, intervals};
     },
   };
+}
+
+// bending: deflections with a curvature of one Legendre polynomial each
+const POLYNOMIALS = 16, POINTS = 32, SETTLED = 1e-12, GOLDEN = (Math.sqrt(5) - 1) / 2, SLACK = 0.03, BASES = {};
+function legendre(x, number) {
+  const values = [1, x];
+  for (let n = 1; n < number - 1; n++) values.push(((2 * n + 1) * x * values[n] - n * values[n - 1]) / (n + 1));
+  return values;
+}
+function integral(series) {
+  const total = [series[0], series[0], ...Array(series.length - 1).fill(0)];
+  for (let n = 1; n < series.length; n++) { total[n + 1] += series[n] / (2 * n + 1); total[n - 1] -= series[n] / (2 * n + 1); }
+  return total;
+}
+function gauss(number) {
+  return Array.from({length: number}, (_, k) => {
+    let x = Math.cos(Math.PI * (k + 0.75) / (number + 0.5)), slope;
+    for (let step = 0; step < 8; step++) {
+      const values = legendre(x, number + 1);
+      slope = number * (values[number - 1] - x * values[number]) / (1 - x * x);
+      x -= values[number] / slope;
+    }
+    return [(1 + x) / 2, 1 / ((1 - x * x) * slope ** 2)];
+  });
+}
+function basisOf(clamps) {
+  if (BASES[clamps]) return BASES[clamps];
+  const orders = Array.from({length: POLYNOMIALS}, (_, k) => clamps === 1 ? k : 2 * k + 2);
+  const slopes = orders.map((order) => integral([...Array(order).fill(0), 1])), series = slopes.map(integral), areas = series.map(integral);
+  const valuesOf = (rows, scale) => (x) => { const at = legendre(2 * x - 1, rows[POLYNOMIALS - 1].length); return rows.map((row) => dot(row, at) / scale); };
+  const deflections = valuesOf(series, 4), rule = gauss(POINTS), at = rule.map(([x]) => deflections(x / clamps));
+  const over = (one, other) => sum(one.map((x, n) => x * other[n] / (4 * (2 * n + 1))));
+  return BASES[clamps] = {at, deflections, areas: valuesOf(areas, 8), end: deflections(1 / clamps), bending: orders.map((order) => 1 / (2 * order + 1)),
+    weighted: orders.map((_, k) => rule.map(([, weight], p) => weight * at[p][k])), slope: slopes.map((row) => over(row, row)),
+    coupling: slopes.slice(1).map((row, k) => over(slopes[k], row))};
+}
+function bentBy(clamps, tension, forces) {
+  const {bending, slope, coupling} = basisOf(clamps), bent = [...forces], last = POLYNOMIALS - 1;
+  const stiffness = bending.map((each, k) => each + tension * slope[k]), couplings = coupling.map((each) => tension * each);
+  for (let k = 0; k < last; k++) {
+    const ratio = couplings[k] / stiffness[k];
+    stiffness[k + 1] -= ratio * couplings[k];
+    bent[k + 1] -= ratio * bent[k];
+  }
+  bent[last] /= stiffness[last];
+  for (let k = last - 1; k >= 0; k--) bent[k] = (bent[k] - couplings[k] * bent[k + 1]) / stiffness[k];
+  return bent;
+}
+function largest(value, upper) {
+  let low = 0.02 * upper, high = 0.98 * upper, left = high - GOLDEN * (high - low), right = low + GOLDEN * (high - low);
+  let [atLeft, atRight] = [left, right].map(value);
+  for (let k = 0; k < 26; k++) {
+    if (atLeft > atRight) { [high, right, atRight] = [right, left, atLeft]; left = high - GOLDEN * (high - low); atLeft = value(left); }
+    else { [low, left, atLeft] = [left, right, atRight]; right = low + GOLDEN * (high - low); atRight = value(right); }
+  }
+  return Math.max(atLeft, atRight);
+}
+function settled(step, start) {
+  for (let k = 0, before = start; k < 500; k++) {
+    const numbers = step(before);
+    if (Math.max(...numbers.map((x, n) => Math.abs(x - before[n]))) < SETTLED) return numbers;
+    before = numbers;
+  }
+  throw new Error("the deflection or length of a beam does not settle");
+}
+const settledLength = (step, start) => Math.exp(settled(([logarithm]) => [Math.log(step(Math.exp(logarithm)))], [Math.log(start)])[0]);
+
+// life: lengths of beams that dry, and shock
+const HALF_SINE = 1.7685, OF_CANTILEVER = 1.0290535885833705, DENSITY = 2330, MODES = 24;
+const tensionAt = ({stress = 0, modulus, thickness}, length) => 12 * stress / modulus * (length / thickness) ** 2;
+const scaleOf = ({modulus, thickness, gap}, liquid) => modulus * thickness ** 3 * gap ** 2 / (24 * liquid);
+function standingEach(beam, liquid) {
+  const {clamps, gap, width} = beam, scale = scaleOf(beam, liquid), unit = gap / 2, {at, end, weighted} = basisOf(clamps);
+  const along = (u) => { const ratio = width / (gap * (1 - u)); return (ratio + Math.hypot(ratio, 2)) * unit / width; };
+  const lengthOf = (logarithm) => (Math.exp(logarithm) * scale) ** 0.25;
+  const balance = (deflection) => lengthOf(settled(([logarithm, ...factors]) => {
+    const length = lengthOf(logarithm), loads = at.map((row) => along(dot(row, factors))), atEnd = clamps === 1 ? unit / length : 0;
+    const bent = bentBy(clamps, tensionAt(beam, length), weighted.map((row, k) => dot(row, loads) + atEnd * end[k])), factor = deflection / dot(end, bent);
+    return [Math.log(factor), ...bent.map((each) => factor * each)];
+  }, Array(1 + POLYNOMIALS).fill(0))[0]);
+  return largest(balance, 1);
+}
+function standing(beam, liquid) {
+  const {clamps} = beam, scale = scaleOf(beam, liquid), {areas, deflections} = basisOf(clamps);
+  return settledLength((length) => {
+    const tension = tensionAt(beam, length);
+    const pull = (begin) => {
+      const before = areas(begin), forces = areas(clamps === 1 ? 1 : 1 - begin).map((area, k) => area - before[k]);
+      return dot(bentBy(clamps, tension, forces), deflections(begin));
+    };
+    return (scale / (4 * largest(pull, 1 / clamps))) ** 0.25;
+  }, scale ** 0.25);
+}
+function released(beam, liquid) {
+  const {clamps, modulus, thickness, gap} = beam;
+  if (clamps === 1) return (3 / 16 * modulus * thickness ** 3 * gap ** 2 / liquid) ** 0.25;
+  const pull = Math.sqrt(48 * liquid / (modulus * thickness ** 3)) / gap, decay = Math.sqrt(tensionAt(beam, 1));
+  return 2 * settledLength((crack) => Math.sqrt(endStiffness(decay * crack)[1] / pull), Math.sqrt(6 / pull));
+}
+function byMode(number, tension) {
+  let low = (2 * number - 1) * Math.PI, high = 2 * number * Math.PI;
+  const other = (a) => Math.sqrt(a * a + tension), slope = (a) => a * Math.tan(a / 2) + other(a) * Math.tanh(other(a) / 2);
+  for (let k = 0; k < 60; k++) {
+    const middle = 0.5 * (low + high);
+    if (slope(middle) < 0) low = middle; else high = middle;
+  }
+  const a = 0.5 * (low + high), b = other(a), byA = Math.tan(a / 2) / a, byB = Math.tanh(b / 2) / b;
+  const square = 1 / (2 * Math.cos(a / 2) ** 2) + byA + 1 / (2 * Math.cosh(b / 2) ** 2) + byB;
+  return (1 / Math.cos(a / 2) - 1 / Math.cosh(b / 2)) * 2 * (byA - byB) / ((a * b) ** 2 * square);
+}
+function halfSineShock(beam, length) {
+  const {clamps, modulus, thickness, gap} = beam, tension = tensionAt(beam, length), k = Math.sqrt(tension);
+  const byUnit = clamps === 1 ? 1 / 8 : k < SLACK ? 1 / 384 - k ** 2 / 15360 : (1 / 8 - Math.tanh(k / 4) / (2 * k)) / k ** 2;
+  const modes = Array.from({length: MODES}, (_, n) => clamps === 1 ? 0 : Math.abs(byMode(n + 1, tension)));
+  const overshoot = clamps === 1 ? OF_CANTILEVER : sum(modes) / byUnit;
+  return modulus * thickness ** 2 * gap / (12 * DENSITY * length ** 4 * byUnit) / (HALF_SINE * overshoot);
+}
+function lifeOf({stress, thickness, gap, width, length, liquid, solids = POLYSILICON}) {
+  const beam = {clamps: stress === undefined ? 1 : 2, stress, thickness, gap, width, modulus: solids.beamModulus};
+  const dried = liquid ? [standingEach, standing, released].map((of) => of(beam, liquid)) : null;
+  return {dried, shock: halfSineShock(beam, length)};
 }
 
 // normal distribution: continued fraction and series of erfc
@@ -267,9 +419,11 @@ function centre(one, score) {
 function answer(question, table) {
   const kind = question.sides ? ofStopper : "stress" in question ? ofBridge : ofCantilever;
   const {lengths, inDryAir, closed, errors, stated, row} = kind(question, table);
+  const {wetting} = question.solids || POLYSILICON, temperature = question.temperature || REFERENCE;
   const airs = question.humidities.map((air) => {
-    const of = air > 0 ? (each) => lengths(each, film(air, table.temperature, 2, table.water)) : inDryAir;
-    return {stated: of(question.stated), members: question.members.map(of), errors: errors(air > 0 ? table : table.dry)};
+    const isHumid = air > 0 && wetting > ROUNDING;
+    const of = isHumid ? (each) => lengths(each, film(air, temperature, wetting, table.water)) : inDryAir;
+    return {stated: of(question.stated), members: question.members.map(of), errors: errors(isHumid ? table : table.dry)};
   });
   const once = (p) => -Math.expm1(Math.log1p(-p) / question.touchdowns);
   const rows = FRACTIONS.map((fraction) => {
@@ -281,7 +435,7 @@ function answer(question, table) {
     const length = (one) => Math.exp(logarithmOf(one, score, question.averaged));
     return {fraction, ...row({length: closed.length(Math.min(...airs.map(length))), intervals: ends})};
   });
-  return {rows, stuck: stated ? stuck(question, airs, closed.bare(stated)) : null};
+  return {rows, stuck: stated ? stuck(question, airs, closed.bare(stated)) : null, life: question.sides ? null : lifeOf(question)};
 }
 const logarithmOf = (one, score, averaged) => averaged ? centre(one, score)[0] : Math.log(lengthAt(one.stated, score));
 function endsOf(one, score, confidence) {

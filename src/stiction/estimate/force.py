@@ -15,7 +15,9 @@ from typing import Any, ClassVar
 
 from stiction.config.units import to_si
 from stiction.estimate import dry
-from stiction.estimate.length import LengthRow, Lengths, NotLearnt, falling, known_at, most_after
+from stiction.estimate.asked import Asked
+from stiction.estimate.closed.life import StopperLife
+from stiction.estimate.length import LengthRow, Lengths, NotLearnt, falling, known_at, of_solids
 from stiction.estimate.state import OF_PATCHES, Film, PatchState
 from stiction.estimate.statistics import Heights
 from stiction.estimate.table import Surrogate
@@ -36,7 +38,7 @@ class ForceRow:
         return self.force
 
 
-def reciprocals(patch: PatchState, forces: Surrogate, full: Surrogate) -> Lengths:
+def reciprocals(patch: PatchState, forces: Surrogate, full: Surrogate, attraction: Surrogate | None = None) -> Lengths:
     """Reciprocals of the pull-off forces of a patch [1/N].
 
     Raises
@@ -45,7 +47,8 @@ def reciprocals(patch: PatchState, forces: Surrogate, full: Surrogate) -> Length
         If the patch is beyond what was learnt.
     """
     change, values = (known_at(process, patch.coordinates, OF_PATCHES) for process in (full, forces))
-    return _changed(falling(values, -math.log(patch.flooded_force)), change["ratio"], max(1.0, change["power"]))
+    summits = falling(of_solids(values, patch, attraction), -math.log(patch.flooded_force))
+    return _changed(summits, change["ratio"], max(1.0, change["power"]))
 
 
 def _changed(summits, ratio, power):
@@ -56,19 +59,11 @@ def _changed(summits, ratio, power):
 
 
 @dataclass(frozen=True)
-class Stopper:
+class Stopper(Asked):
     """Question about one stopper."""
 
-    name: str
-    surfaces: tuple[Heights, Heights]  #: as stated
-    members: tuple[dict[str, Heights], dict[str, Heights]]  #: as of `stiction.estimate.question.Question`
-    humidities: tuple[float, ...]  #: [-]
     sides: tuple[float, float]  #: of its area [m]
     force: float | None = None  #: that restores it [N]
-    touchdowns: int = 1
-    left_out: tuple[str, ...] = ()  #: keys that a run would read as well
-    averaged: bool = False
-    constant: float = dry.POLYSILICON  #: Hamaker constant of the solids in dry air [J]
     unit: ClassVar[str] = "uN"  #: of its size, a force
 
     @property
@@ -77,18 +72,19 @@ class Stopper:
         return self.force
 
     @property
-    def most(self) -> float:
-        """Largest fraction that is known after all touchdowns [-]."""
-        return most_after(self.touchdowns)
-
-    @property
     def stated(self) -> float | None:
         """Reciprocal of its force [1/N]."""
         return None if self.force is None else 1 / self.force
 
-    def closed(self, _modulus: float) -> Driven:
+    @property
+    def closed(self) -> Driven:
         """Closed form of its voltage, which it has not."""
         return Driven(0.0)
+
+    @property
+    def life(self) -> StopperLife:
+        """Its life."""
+        return StopperLife(self.surroundings)
 
     def errors(self, table: Mapping[str, Any]) -> Mapping[str, Any]:
         """Part of the table with the errors of its forces."""
@@ -96,14 +92,14 @@ class Stopper:
 
     def lengths(self, heights: Heights, water: Film, table: Mapping[str, Any], *_tips: Surrogate | None) -> Lengths:
         """Reciprocals of its pull-off forces on the sum of two surfaces [1/N]."""
-        learnt = table["stoppers"]
-        patch = PatchState(heights, water, self._area(learnt), table["modulus"])
-        return reciprocals(patch, *(Surrogate(**learnt[name]) for name in ("forces", "full")))
+        learnt, attraction = table["stoppers"], self.solids.attraction(water.energy)
+        patch = PatchState(heights, water, self._area(learnt), self.solids.modulus, attraction)
+        return reciprocals(patch, *(Surrogate(**learnt[name]) for name in ("forces", "full", "attraction")))
 
     def in_dry_air(self, heights: Heights, table: Mapping[str, Any]) -> Lengths:
         """Reciprocals of its pull-off forces in dry air [1/N]."""
         learnt = table["dry"]["stoppers"]
-        patch = dry.DryPatch(heights, self.constant, self._area(learnt), table["modulus"])
+        patch = dry.DryPatch(heights, self.solids.in_dry_air, self._area(learnt), self.solids.modulus)
         return dry.reciprocals(patch, *dry.processes(learnt, "forces", "full"))
 
     def _area(self, learnt):

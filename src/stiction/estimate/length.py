@@ -7,7 +7,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from stiction.estimate.state import COORDINATES, TipState
+from stiction.estimate.state import COORDINATES, OF_SOLIDS, PatchState, TipState
 from stiction.estimate.table import Surrogate
 
 #: Normal scores of the learnt lengths: the last one and the slope there give all shorter lengths.
@@ -65,27 +65,47 @@ class Impossible(NotLearnt):
     """Refusal of numbers that no device has. A run refuses them, too."""
 
 
-def lengths(state: TipState, gap: float, tips: Surrogate, full: Surrogate | None) -> Lengths:
+def lengths(
+    state: TipState, gap: float, tips: Surrogate, full: Surrogate | None, attraction: Surrogate | None = None
+) -> Lengths:
     """Lengths of beams over a gap [m] in a state.
 
-    Full contact changes an attraction by a factor, as a stiffer beam would.
+    Full contact changes an attraction by a factor, as a stiffer beam would. ASSUME: on other solids by the same factor.
 
     Raises
     ------
     NotLearnt
         If the state is beyond what was learnt.
     """
-    found = _on_summits(state, gap, tips)
+    distribution = _on_summits(state, gap, tips, attraction)
     for _ in range(2 if full else 0):
-        changed = replace(state, stiffness=state.stiffness / change(state, found, gap, full))
-        found = _on_summits(changed, gap, tips)
-    return found
+        changed = replace(state, stiffness=state.stiffness / change(state, distribution, gap, full))
+        distribution = _on_summits(changed, gap, tips, attraction)
+    return distribution
 
 
-def _on_summits(state, gap, tips):
+def _on_summits(state, gap, tips, attraction):
     """Lengths on summits alone."""
-    values = known_at(tips, state.coordinates, COORDINATES)
+    values = of_solids(known_at(tips, state.coordinates, COORDINATES), state, attraction)
     return falling(values, math.log(1.5 * gap / state.flooded_slope))
+
+
+def of_solids(
+    values: Mapping[str, float], state: TipState | PatchState, attraction: Surrogate | None, power: float = 1.0
+) -> Mapping[str, float]:
+    """Quantities on solids that attract each other as those of a state, from those on polysilicon.
+
+    They change by a power of what is learnt.
+
+    Raises
+    ------
+    NotLearnt
+        If the state is beyond what was learnt.
+    """
+    if not (attraction and (by := math.log(state.attraction))):
+        return values
+    by_one = known_at(attraction, (*state.coordinates, by), (*state.names, OF_SOLIDS))
+    return dict(values) | {name: values[name] + power * by * by_one[name] for name in NAMES[:3]}
 
 
 #: Least fall of the logarithm of a length by one normal score.
@@ -116,12 +136,12 @@ def known_at(process: Surrogate, coordinates: Sequence[float], names: Sequence[s
     return values.of
 
 
-def change(state: TipState, found: Lengths, gap: float, full: Surrogate) -> float:
+def change(state: TipState, distribution: Lengths, gap: float, full: Surrogate) -> float:
     """Factor of the attraction of tips by full contact, as a run applies it."""
-    slope = 1.5 * gap / found.at(SCORES[-1])
+    slope = 1.5 * gap / distribution.at(SCORES[-1])
     at_slope = replace(state, stiffness=13.5 * state.film.energy / slope**4)  # flooded flats hold up to this slope
     ratio = known_at(full, at_slope.coordinates, COORDINATES)["ratio"]
-    return most(math.exp(ratio), found.fall)
+    return most(math.exp(ratio), distribution.fall)
 
 
 def most(ratio: float, fall: float) -> float:

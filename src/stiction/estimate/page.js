@@ -24,9 +24,18 @@ const INPUTS = [
   ["touchdowns", "touchdowns", 1, 1000, 1, 1],
   ["voltage_V", "voltage in contact [V]", 0, 50, 0.5, 0],
   ["dielectric_nm", "dielectric, thickness over permittivity [nm]", 10, 1000, 10, 100],
+  ["tension_mN_per_m", "surface tension of a liquid that dries, 0 without one [mN/m]", 0, 75, 0.1, 0],
 ];
-const OWN = {[CANTILEVER]: ["thickness_um", "gap_um", "width_um", "length_um", "voltage_V", "dielectric_nm"],
-  [BRIDGE]: ["thickness_um", "below_um", "width_um", "length_um", "stress_MPa"], [STOPPER]: ["side_um", "other_um", "force_uN"]};
+const OF_MATERIAL = [
+  ["modulus_GPa", "Young's modulus [GPa]", 60, 400, 2, 164],
+  ["temperature_K", "temperature of the water [K]", 274, 372, 2, 300],
+  ["angle_deg", "contact angle of the underside [°]", 0, 180, 5, 0],
+  ["opposite_deg", "contact angle of the opposite surface [°]", 0, 180, 5, 0],
+  ["water_zJ", "Hamaker constant through water [zJ]", 2.5, 260, 2.5, 97.5],
+  ["dry_zJ", "Hamaker constant through dry air [zJ]", 60, 480, 0.5, 186.5],
+];
+const OWN = {[CANTILEVER]: ["thickness_um", "gap_um", "width_um", "length_um", "voltage_V", "dielectric_nm", "tension_mN_per_m"],
+  [BRIDGE]: ["thickness_um", "below_um", "width_um", "length_um", "stress_MPa", "tension_mN_per_m"], [STOPPER]: ["side_um", "other_um", "force_uN"]};
 const DRY = "dry", DRIEST = 0.345, airOf = (value) => value("humidity") < DRIEST ? DRY : value("humidity");
 const PAIR = ["known_skewness", "known_kurtosis"]; // a file states both or neither
 const OPEN = ["hurst", "corner_rad_per_um", "cutoff_rad_per_um", "skewness", "kurtosis"], byId = (id) => document.getElementById(id);
@@ -54,11 +63,17 @@ function questionOf({own, kind, like, substrate, value, open}) {
   const of = (name) => added(heights({...typical(name), ...own}), heights(typical(substrate)));
   const asked = {stated: of(like), members: open ? Object.keys(TABLE.library).map(of) : [], averaged: false,
     humidities: [airOf(value) === DRY ? 0 : airOf(value)], touchdowns: value("touchdowns")};
+  Object.assign(asked, {solids: solidsOf(value), temperature: value("temperature_K")});
   if (kind === STOPPER) return {...asked, sides: ["side_um", "other_um"].map((key) => value(key) * 1e-6), force: value("force_uN") * 1e-6};
-  const beam = {...asked, thickness: value("thickness_um") * 1e-6, width: value("width_um") * 1e-6, length: value("length_um") * 1e-6};
+  const beam = {...asked, thickness: value("thickness_um") * 1e-6, width: value("width_um") * 1e-6, length: value("length_um") * 1e-6, liquid: value("tension_mN_per_m") * 1e-3};
   if (kind === BRIDGE) return {...beam, gap: value("below_um") * 1e-6, stress: value("stress_MPa") * 1e6};
   const gap = value("gap_um") * 1e-6, energy = energyOf(value("voltage_V"), value("dielectric_nm") * 1e-9, gap);
   return {...beam, added: energy, gap};
+}
+function solidsOf(value) {
+  const modulus = value("modulus_GPa") * 1e9, cosine = (key) => Math.cos(value(key) * Math.PI / 180);
+  return {modulus, beamModulus: modulus, throughWater: value("water_zJ") / 97.5 * POLYSILICON.throughWater,
+    inDryAir: value("dry_zJ") / 186.5 * POLYSILICON.inDryAir, wetting: cosine("angle_deg") + cosine("opposite_deg")};
 }
 const RAREST = 1e-6, NEARLY_ALL = 0.99; // fractions that are shown
 const WORDS = {[CANTILEVER]: ["length", "µm", "length_um"], [BRIDGE]: ["length", "µm", "length_um"], [STOPPER]: ["force", "µN", "force_uN"]};
@@ -69,7 +84,7 @@ function percent(part, touchdowns) {
   return `${part >= after(SCORES[0], touchdowns) ? "at least " : ""}${Number((100 * Math.min(part, NEARLY_ALL)).toPrecision(2))} %`;
 }
 function show() {
-  for (const [key, , low] of INPUTS) if (!Array.isArray(low)) byId("of_" + key).textContent = byId(key).value;
+  for (const [key, , low] of [...INPUTS, ...OF_MATERIAL]) if (!Array.isArray(low)) byId("of_" + key).textContent = byId(key).value;
   const given = stated();
   byId("of_humidity").textContent = airOf(given.value);
   for (const key of Object.values(OWN).flat()) byId(key).closest("label").hidden = !OWN[given.kind].includes(key);
@@ -90,24 +105,52 @@ function write(found, {kind, value}) {
   byId("table").innerHTML = `${caption}<thead><tr><th scope="col">stuck</th><th scope="col">${name}</th><th scope="col">90 %</th>` +
     `<th scope="col">95 %</th></tr></thead><tbody>${found.rows.map(row).join("")}</tbody>`;
   byId("said").className = "said";
-  const [least, most] = found.rows[2].intervals["90"].map(micro), safe = kind === STOPPER ? `at least ${most}` : `at most ${least}`;
+  const dried = found.life && found.life.dried, lowest = found.rows[2].intervals["90"][0], mustDry = dried && dried[0] < lowest;
+  const [least, most] = found.rows[2].intervals["90"].map(micro);
+  const safe = kind === STOPPER ? `at least ${most}` : mustDry ? `at most ${down(dried[0] * 1e6)}, or it can collapse while ${LIQUID} dries` : `at most ${least}`;
   byId("said").textContent = `1 in 1000 sticks between ${least} and ${most} ${symbol} (90 %): use ${safe}.`;
   const [middle, low, high] = found.stuck.map((part) => percent(part, value("touchdowns")));
   byId("stuck").textContent = `At ${value(key)} ${symbol}, ${middle} stick (95 %: ${low} to ${high}).`;
+  byId("life").textContent = found.life ? livesOf(found.life, value(key), kind).join("\n") : "";
+}
+const LIQUID = "liquid", GRAVITY = 9.80665, FATES = ["stands", "may collapse", "collapses"];
+function down(number) { // to three digits, as a bound
+  const [digits, power] = number.toExponential(8).split("e");
+  return Number(`${digits.slice(0, 4)}e${power}`);
+}
+function livesOf({dried, shock}, length, kind) {
+  const touches = `At ${length} µm it does not touch below a half-sine shock of ${grouped(down(shock / GRAVITY))} g.`;
+  if (!dried) return [touches];
+  const [stands, collapses, free] = dried.map((size) => down(size * 1e6)), fate = dried.slice(0, 2).filter((size) => length * 1e-6 > size).length;
+  return [`While ${LIQUID} dries, beams stand up to ${stands} µm and collapse beyond ${collapses} µm; ` +
+    `after a collapse they stay down if they are longer than ${free} µm${kind === BRIDGE ? "; shorter ones may, too" : ""}.`, `At ${length} µm it ${FATES[fate]} while ${LIQUID} dries.`, touches];
 }
 function refuse(reason) {
   byId("said").className = "said refused";
   byId("said").textContent = `Not known at once: ${reason.message}. A run computes it.`;
   byId("table").innerHTML = "<caption>No number</caption>";
-  byId("stuck").textContent = "";
+  byId("stuck").textContent = byId("life").textContent = "";
+}
+function liquidsOf(kind, value) {
+  const tension = value("tension_mN_per_m");
+  return kind !== STOPPER && tension ? `liquids: {${LIQUID}: {surface_tension_mN_per_m: ${tension}}}\n` : "";
 }
 function yamlOf({own, kind, like, substrate, value, open}) {
-  const surface = Object.entries({...own, ...(open ? {like} : {})}).map(([key, of]) => `${key}: ${of}`).join(", ");
+  const others = materialOf(value), named = others ? ", material: Upper" : "";
+  const surface = Object.entries({...own, ...(open ? {like} : {})}).map(([key, of]) => `${key}: ${of}`).join(", ") + named;
   const air = `humidities: [${airOf(value)}], touchdowns: ${value("touchdowns")}`;
-  return `run: {pairs: [mine], studies: []}\nsurfaces:\n  Mine: {${surface}}\npairs:\n` +
+  const opposite = others ? `  ${substrate}: {material: Lower}\n` : "";
+  return `run: {pairs: [mine], studies: []}\n${waterOf(value)}${others}surfaces:\n  Mine: {${surface}}\n${opposite}pairs:\n` +
     `  mine: {beam: Mine, substrate: ${substrate}, gap_um: ${value(kind === BRIDGE ? "below_um" : "gap_um")}, humidities: [${airOf(value)}]}\n` +
-    `devices:\n  ${NAMES[kind]}: {kind: ${kind}, pair: mine, ${SIZES[kind](value)}, ${air}}\n`;
+    `${liquidsOf(kind, value)}devices:\n  ${NAMES[kind]}: {kind: ${kind}, pair: mine, ${SIZES[kind](value)}, ${air}}\n`;
 }
+function materialOf(value) {
+  if (OF_MATERIAL.every(([key, , , , , start]) => key === "temperature_K" || value(key) === start)) return "";
+  const of = (angle) => `{young_modulus_GPa: ${value("modulus_GPa")}, contact_angle_deg: ${value(angle)}, ` +
+    `hamaker_constant_zJ: {water: ${value("water_zJ")}, dry: ${value("dry_zJ")}}}`;
+  return `materials:\n  Upper: ${of("angle_deg")}\n  Lower: ${of("opposite_deg")}\n`;
+}
+const waterOf = (value) => value("temperature_K") === REFERENCE ? "" : `water: {temperature_K: ${value("temperature_K")}}\n`;
 const NAMES = {[CANTILEVER]: "Lever", [BRIDGE]: "Bridge", [STOPPER]: "Bump"};
 const SIZES = {
   [CANTILEVER]: ofLever,
@@ -145,7 +188,7 @@ function bridge(value) {
   const clamps = [0, 270].map((x) => `<rect x="${x}" y="${top}" width="30" height="${75 - top}" fill="#57606a"/>`).join("");
   return `${clamps}<path d="M30 ${top} ${side(top, low)} V ${top + thickness} ${back(top + thickness, 75)} Z" fill="#0969da"/>`;
 }
-byId("form").innerHTML = INPUTS.map(slider).join("");
+byId("form").innerHTML = `${INPUTS.map(slider).join("")}<details><summary>Material and temperature</summary>${OF_MATERIAL.map(slider).join("")}</details>`;
 byId("form").addEventListener("input", ({target}) => {
   if (PAIR.includes(target.id)) for (const id of PAIR) byId(id).checked = target.checked;
   show();

@@ -3,15 +3,20 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, NamedTuple
 
 from stiction.config.kinds import KINDS
 from stiction.config.units import to_si
-from stiction.contact.air import DRY, DRY_AIR, is_humid, is_possible
+from stiction.constants import HAMAKER_CONSTANT
+from stiction.contact.air import DRY, DRY_AIR, is_possible
 from stiction.estimate import dry
+from stiction.estimate.asked import Asked
 from stiction.estimate.bridge import Bridge
+from stiction.estimate.closed.beams import SlenderBeam
+from stiction.estimate.closed.life import BeamLife, Surroundings
 from stiction.estimate.force import Stopper
-from stiction.estimate.length import Impossible, LengthRow, Lengths, NotLearnt, lengths, most_after
+from stiction.estimate.length import Impossible, LengthRow, Lengths, NotLearnt, lengths
+from stiction.estimate.solids import SolidPair
 from stiction.estimate.state import Film, TipState, stiffness_of
 from stiction.estimate.statistics import Heights, moments_of, slope_of
 from stiction.estimate.table import Surrogate
@@ -25,19 +30,24 @@ OF_SURFACES = ("rms_nm", "like", "hurst", "corner_rad_per_um", "cutoff_rad_per_u
 OF_SURFACES += ("unknown", "uncertainty", "psd", "published_psd", "mean_summit_radius_um", "summit_density_per_um2")
 OF_PAIRS = ("beam", "substrate", "gap_um", "humidities", "attraction", "coarser_mesh")
 OF_DEVICES = ("kind", "pair", "length_um", "thickness_um", "gap_um", "width_um", "humidities", "touchdowns")
-OF_DEVICES += OF_VOLTAGES
+OF_DEVICES += ("shock_g", *OF_VOLTAGES)
 OF_BRIDGES = ("kind", "pair", "length_um", "thickness_um", "gap_um", "width_um", "residual_stress_MPa")
-OF_BRIDGES += ("humidities", "touchdowns")
+OF_BRIDGES += ("humidities", "touchdowns", "shock_g")
 OF_STOPPERS = ("kind", "pair", "contact_um", "restoring_force_uN", "stiffness_N_per_m", "gap_um", "mass_ng")
-OF_STOPPERS += ("humidities", "touchdowns", "electrode")
+OF_STOPPERS += ("humidities", "touchdowns", "electrode", "shock_g")
+#: Keys of a material, of which the last two change no length or force.
+OF_MATERIALS = ("young_modulus_GPa", "poisson_ratio", "hamaker_constant_zJ", "contact_angle_deg")
+OF_MATERIALS += ("hardness_GPa", "density_kg_per_m3")
 #: Keys that change the length to build alone: the estimate is of exact inputs, and leaves out what a run adds.
 LEFT_OUT = ("uncertainty", "requirement", "chart", "roughness")
 #: Sections of a file that change no length or force.
 OF_FILES = ("run", "surfaces", "pairs", "devices", "figures", "studies", "beam", "chaos", "character", "seed")
 #: Sections that change a device only where its device, pair or surface names an entry, with a key that is refused.
 OF_NAMES = ("materials", "process", "test_beams", "liquids", "scans")
-#: Keys of sections that change no length or force but by their numbers of samples.
-OF_SAMPLES = {
+#: Keys of sections that the estimate reads, or that change no length or force but by their numbers of samples.
+OF_SECTIONS = {
+    "solid": ("young_modulus_GPa", "poisson_ratio"),
+    "water": ("temperature_K",),
     "design": ("accuracy", "beams", "shares", "chart_points", "budget_beams", "budget_samples", "samples_of_patches")
     + ("worst_humidities",),
     "contact": ("samples", "chunks"),
@@ -47,6 +57,43 @@ OF_DEFAULTS = {"attraction": {"reach": "all"}}
 #: Keys of numbers that must be positive.
 POSITIVE = ("rms_nm", "hurst", "corner_rad_per_um", "cutoff_rad_per_um", "kurtosis", "thickness_um", "gap_um")
 POSITIVE += ("width_um", "length_um", "contact_um", "restoring_force_uN", "thickness_nm", "permittivity", "touchdowns")
+POSITIVE += ("mass_ng", "stiffness_N_per_m", "area_um2", "surface_tension_mN_per_m")
+
+
+class Ends(NamedTuple):
+    """Ends of a number in a configuration, as its schema has them."""
+
+    low: float
+    high: float
+    least: str = "at least"  #: or above
+    most: str = "at most"  #: or below
+
+    def refusal(self, value: float) -> str | None:
+        """Refusal of a value beyond them, as the end of a sentence."""
+        is_low = value < self.low or (value == self.low and self.least == "above")
+        is_high = value > self.high or (value == self.high and self.most == "below")
+        allowed = f"must be a number {self.least} {self.low:g} and {self.most} {self.high:g}"
+        return f"is {value}, {allowed}" if is_low or is_high else None
+
+
+#: Ends of the numbers of surfaces, solids and water.
+ENDS = {
+    "rms_nm": Ends(0.001, 1000),
+    "skewness": Ends(-10, 10),
+    "kurtosis": Ends(1, 100, "above"),
+    "mean_summit_radius_um": Ends(0.001, 1000),
+    "summit_density_per_um2": Ends(0, 100_000, "above"),
+    "hurst": Ends(0, 1),
+    "corner_rad_per_um": Ends(0.01, 100_000),
+    "cutoff_rad_per_um": Ends(0.01, 100_000),
+    "young_modulus_GPa": Ends(0, 2000, "above"),
+    "poisson_ratio": Ends(-1, 0.5, "above", "below"),
+    "contact_angle_deg": Ends(0, 180),
+    "density_kg_per_m3": Ends(50, 30_000),
+    "temperature_K": Ends(273, 373),
+}
+#: The same of a Hamaker constant through any medium.
+OF_ATTRACTION = dict.fromkeys(HAMAKER_CONSTANT, Ends(0, 10_000, "above"))
 #: Keys of which the second number must be above the first. A length in metres is not.
 _IN_ORDER = ("thickness_um", "length_um"), ("gap_um", "length_um"), ("corner_rad_per_um", "cutoff_rad_per_um")
 #: Numbers that a surface may leave open.
@@ -56,23 +103,14 @@ _WORDS = dict(zip(("skewness", "kurtosis", "hurst", "corner", "cutoff"), _OPEN, 
 
 
 @dataclass(frozen=True)
-class Question:
+class Question(Asked):
     """Question about one cantilever."""
 
-    name: str
-    surfaces: tuple[Heights, Heights]  #: as stated
-    members: tuple[dict[str, Heights], dict[str, Heights]]  #: typical surfaces in place of each that is partly assumed
-    humidities: tuple[float, ...]  #: [-]
     thickness: float  #: [m]
     gap: float  #: [m]
     width: float  #: [m]
     length: float | None = None  #: [m]
-    touchdowns: int = 1
-    left_out: tuple[str, ...] = ()  #: keys that a run would read as well
-    averaged: bool = False  #: whether the length is the mean over typical surfaces, not that on the stated one
     added: float = 0.0  #: energy that a voltage adds [J m⁻²]
-    constant: float = dry.POLYSILICON  #: Hamaker constant of the solids in dry air [J]
-    unit: ClassVar[str] = "um"  #: of its size, a length
 
     @property
     def size(self) -> float | None:
@@ -80,22 +118,20 @@ class Question:
         return self.length
 
     @property
-    def most(self) -> float:
-        """Largest fraction that is known after all touchdowns [-]."""
-        return most_after(self.touchdowns)
+    def _stiffness(self):
+        """Stiffness as of `stiction.estimate.state`."""
+        return stiffness_of(self.solids.beam_modulus, self.thickness, self.gap)
 
     @property
-    def stated(self) -> float | None:
-        """Its length [m]."""
-        return self.length
+    def closed(self) -> Driven:
+        """Closed form of its lengths at its voltage."""
+        return Driven(drive_of(self.added, self._stiffness, self.gap))
 
-    def _stiffness(self, modulus):
-        """Stiffness as of `stiction.estimate.state`."""
-        return stiffness_of(modulus, self.thickness, self.gap)
-
-    def closed(self, modulus: float) -> Driven:
-        """Closed form of its lengths at its voltage, from the modulus of the solids [Pa]."""
-        return Driven(drive_of(self.added, self._stiffness(modulus), self.gap))
+    @property
+    def life(self) -> BeamLife:
+        """Its life."""
+        sizes = self.thickness, self.gap, self.width, self.solids.beam_modulus
+        return BeamLife(SlenderBeam(1, *sizes), self.surroundings)
 
     def errors(self, table: Mapping[str, Any]) -> Mapping[str, Any]:
         """Part of the table with the errors of its lengths."""
@@ -105,12 +141,13 @@ class Question:
         self, heights: Heights, water: Film, table: Mapping[str, Any], tips: Surrogate, full: Surrogate | None
     ) -> Lengths:
         """Lengths at which it sticks on the sum of two surfaces [m]."""
-        state = TipState(heights, water, self._stiffness(table["modulus"]), self.width, table["modulus"])
-        return lengths(state, self.gap, tips, full)
+        solids, attraction = self.solids, self.solids.attraction(water.energy)
+        state = TipState(heights, water, self._stiffness, self.width, solids.modulus, attraction)
+        return lengths(state, self.gap, tips, full, Surrogate(**table["attraction"]))
 
     def in_dry_air(self, heights: Heights, table: Mapping[str, Any]) -> Lengths:
         """Lengths at which it sticks in dry air [m]."""
-        tip = dry.DryTip(heights, self.constant, self._stiffness(table["modulus"]), self.width, table["modulus"])
+        tip = dry.DryTip(heights, self.solids.in_dry_air, self._stiffness, self.width, self.solids.modulus)
         return dry.lengths(tip, self.gap, *dry.processes(table["dry"], "tips", "full"))
 
     def row(self, row: LengthRow) -> LengthRow:
@@ -132,15 +169,14 @@ def surface(entry: Mapping[str, Any], library: Library) -> tuple[Heights, dict[s
     As `stiction.config.surfaces.described.complete` and `stiction.config.surfaces.members.members`.
     """
     refuse_impossible(entry)
-    if unknown := [key for key in entry if key not in OF_SURFACES]:
-        raise NotLearnt(f"{unknown[0]} of a surface is not among what was learnt")
+    _refuse_keys(entry)
     if "psd" in entry and entry["psd"] != "published":
         raise NotLearnt("a spectrum that is identified from summits was not learnt: state its corner and slope")
     if "psd" in entry:
         numbers = _numbers(entry)
         left_open = [_WORDS[word] for word in entry.get("unknown", ())]
-        known = {key: value for key, value in numbers.items() if key not in left_open}
-        members = {name: _as(other, known, left_open) for name, other in library.items()} if left_open else {}
+        stated = {key: value for key, value in numbers.items() if key not in left_open}
+        members = {name: _as(other, stated, left_open) for name, other in library.items()} if left_open else {}
         return _statistics(numbers), members
     left_open = [key for key in _OPEN if key not in entry]
     members = {name: _as(other, entry, left_open) for name, other in library.items()} if left_open else {}
@@ -154,6 +190,15 @@ def surface(entry: Mapping[str, Any], library: Library) -> tuple[Heights, dict[s
     return _statistics(means | entry), members
 
 
+def _refuse_keys(entry):
+    """Refuse keys of a surface that are not known, or that come alone."""
+    if unknown := [key for key in entry if key not in OF_SURFACES]:
+        raise NotLearnt(f"{unknown[0]} of a surface is not among what was learnt")
+    for key, other in (_OPEN[:2], _OPEN[1::-1]):
+        if key in entry and other not in entry:
+            raise Impossible(f"{key} of a surface must come with {other}: both are stated or neither")
+
+
 def _as(other, entry, left_open):
     """Statistics of a surface with those numbers of another one that it leaves open."""
     numbers = _numbers(other)
@@ -163,13 +208,15 @@ def _as(other, entry, left_open):
 def _numbers(entry):
     """Numbers of a surface in normal form, as files describe it."""
     psd = entry["published_psd"]
-    own = {key: entry[key] for key in ("rms_nm", *_OPEN[:2])} | {key: psd[key] for key in _OPEN[3:]}
-    return own | {"hurst": -slope_of(psd) / 2 - 1}
+    numbers = {key: entry[key] for key in ("rms_nm", *_OPEN[:2])} | {key: psd[key] for key in _OPEN[3:]}
+    return numbers | {"hurst": -slope_of(psd) / 2 - 1}
 
 
 def _statistics(numbers):
     """Statistics of a surface by all of its numbers."""
-    ends = (to_si(numbers[key], "rad_per_um") for key in _OPEN[3:])
+    corner, cutoff = ends = [to_si(numbers[key], "rad_per_um") for key in _OPEN[3:]]
+    if not corner < cutoff:
+        raise Impossible("no spectrum has a corner that is not below its cut-off")
     moments = moments_of(*ends, -2 * (1 + numbers["hurst"]))
     return Heights(to_si(numbers["rms_nm"], "nm"), numbers["skewness"], numbers["kurtosis"], moments)
 
@@ -190,17 +237,31 @@ def refuse_impossible(numbers: Mapping[str, Any], names: Mapping[str, str] | Non
         value = numbers[key]
         if not all(0 < each < math.inf for each in (value if isinstance(value, Sequence) else [value])):
             raise Impossible(f"{names[key]} must be above 0, got {value}")
-    _refuse_compression(numbers, names)
+    _refuse_negative(numbers, names)
     for less, more in [pair for pair in _IN_ORDER if numbers.keys() >= set(pair)]:
         if numbers[more] <= numbers[less]:
             got = f"got {numbers[more]}, {numbers[less]}"
             raise Impossible(f"{names[more]} must be above {names[less]}, in the same unit, {got}")
 
 
-def _refuse_compression(numbers, names):
-    """Refuse a bridge that may buckle."""
-    if not 0 <= (stress := numbers.get("residual_stress_MPa", 0)) < math.inf:
-        raise Impossible(f"{names['residual_stress_MPa']} must be 0 or above, got {stress}")
+def refuse_beyond(numbers: Mapping[str, Any], section: str, ends: Mapping[str, Ends] = ENDS) -> None:
+    """Refuse numbers of a section beyond their ends.
+
+    Raises
+    ------
+    Impossible
+        If a number is beyond them.
+    """
+    for key in [key for key in ends if key in numbers]:
+        if refusal := ends[key].refusal(numbers[key]):
+            raise Impossible(f"{section}.{key} {refusal}")
+
+
+def _refuse_negative(numbers, names):
+    """Refuse a bridge that may buckle, and a shock without a size."""
+    for key in ("residual_stress_MPa", "shock_g"):
+        if not 0 <= (value := numbers.get(key, 0)) < math.inf:
+            raise Impossible(f"{names[key]} must be 0 or above, got {value}")
 
 
 def questions(
@@ -210,40 +271,109 @@ def questions(
 
     The table has the typical surfaces, and the pairs of the paper.
     """
-    found, devices = {}, content.get("devices", {})
+    by_device, devices = {}, content.get("devices", {})
     if "file" in devices:
         return {"Table": NotLearnt("devices of a table were not learnt")}
     for name, device in devices.items():
         try:
-            found[name] = _question(name, device, content, table)
+            by_device[name] = _question(name, device, content, table)
         except NotLearnt as reason:
-            found[name] = reason
+            by_device[name] = reason
         except (KeyError, TypeError, AttributeError, ArithmeticError, ValueError) as wrong:
-            found[name] = NotLearnt(f"its file is not complete, at {wrong}; stiction check says what is wrong")
-    return found
+            by_device[name] = NotLearnt(f"its file is not complete, at {wrong}; stiction check says what is wrong")
+    return by_device
 
 
 def _question(name, device, content, table):
     """Question of one device."""
-    others = [f"{part}.{key}" for part, keys in OF_SAMPLES.items() for key in content.get(part, {}) if key not in keys]
-    others += [key for key in content if key not in (*OF_FILES, *OF_NAMES, *OF_SAMPLES)]
+    others = [
+        f"{section}.{key}"
+        for section, keys in OF_SECTIONS.items()
+        for key in content.get(section, {})
+        if key not in keys
+    ]
+    others += [key for key in content if key not in (*OF_FILES, *OF_NAMES, *OF_SECTIONS)]
     if others := [key for key in others if key not in OF_DEFAULTS or content[key] != OF_DEFAULTS[key]]:
         raise NotLearnt(f"{others[0]} was not learnt")
-    known, of = _of_kind(device["kind"])
+    keys_known, make = _of_kind(device["kind"])
     left_out = tuple(key for key in LEFT_OUT if key in device)
-    if others := [key for key in device if key not in known + LEFT_OUT]:
+    if others := [key for key in device if key not in keys_known + LEFT_OUT]:
         raise NotLearnt(f"{others[0]} was not learnt")
     pair, library = (table["pairs"] | content.get("pairs", {}))[device["pair"]], table["library"]
     if others := [key for key in pair if key not in OF_PAIRS]:
         raise NotLearnt(f"{others[0]} of a pair was not learnt")
-    refuse_impossible(device | device.get("dielectric", {}))
-    surfaces = library | content.get("surfaces", {})
+    _refuse_life(device, content)
+    surfaces = library | {key: library.get(key, {}) | entry for key, entry in content.get("surfaces", {}).items()}
     entries = [dict(surfaces[pair[side]]) for side in ("beam", "substrate")]
-    constant = dry.constant_of(entries, content.get("materials", {}))
-    if any([entry.pop("material", "") for entry in entries]) and any(map(is_humid, airs_of(device))):
-        raise NotLearnt("material of a surface was learnt in dry air alone")
+    names = [entry.pop("material", None) for entry in entries]
+    solids, material = solids_of(names, content), materials_of(names, content).get(names[0], {})
+    surroundings = Surroundings.of_device(device, content, material)
+    for side, entry in zip(("beam", "substrate"), entries, strict=True):
+        refuse_beyond(entry, f"surfaces.{pair[side]}")
     sides = [surface(entry, library) for entry in entries]
-    return of(name, device, sides, left_out=left_out, constant=constant)
+    more = {"left_out": left_out, "solids": solids, "surroundings": surroundings} | temperature_of(content)
+    return make(name, device, sides, **more)
+
+
+def _refuse_life(device, content):
+    """Refuse impossible numbers of a device, of its life, and of liquids."""
+    refuse_impossible(device | device.get("dielectric", {}))
+    refuse_impossible(device.get("electrode", {}))
+    for name, liquid in content.get("liquids", {}).items():
+        refuse_impossible(liquid)
+        refuse_beyond(liquid, f"liquids.{name}")
+
+
+def temperature_of(content: Mapping[str, Any]) -> dict[str, float]:
+    """Temperature of the water of a file by its name in a question, if the file states one.
+
+    Raises
+    ------
+    Impossible
+        If water is not liquid there.
+    """
+    water = content.get("water", {})
+    refuse_beyond(water, "water")
+    return {"temperature": float(water["temperature_K"])} if "temperature_K" in water else {}
+
+
+def materials_of(names: Sequence[str | None], content: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Materials of a file, with those by name that it does not state itself."""
+    materials = content.get("materials", {})
+    if not any(name and (name not in materials or "like" in materials[name]) for name in names):
+        return materials
+    from stiction.config.materials import with_named  # imports NumPy
+
+    used = {str(k): {"material": name} for k, name in enumerate(names)}
+    return with_named({"surfaces": used, "materials": materials})["materials"]
+
+
+def solids_of(names: Sequence[str | None], content: Mapping[str, Any]) -> SolidPair:
+    """SolidPair of materials by name, or of section solid where a surface has none.
+
+    Raises
+    ------
+    NotLearnt
+        If something else of a material matters.
+    """
+    solid, materials = content.get("solid", {}), materials_of(names, content)
+    refuse_beyond(solid, "solid")
+    return SolidPair.of(*(solid | _material(name, materials) for name in names))
+
+
+def _material(name, materials):
+    """Possible properties of a material."""
+    if name is None:
+        return {}
+    if name not in materials:
+        raise Impossible(f"material {name} is not among {', '.join(materials) or 'materials'}")
+    stated = {key: value for key, value in materials[name].items() if not (key == "coating_nm" and value == 0)}
+    if others := [key for key in stated if key not in OF_MATERIALS]:
+        raise NotLearnt(f"{others[0]} of {name} was not learnt")
+    refuse_beyond(stated, f"materials.{name}")
+    constants = stated.get("hamaker_constant_zJ", {})
+    refuse_beyond(constants, f"materials.{name}.hamaker_constant_zJ", OF_ATTRACTION)
+    return stated
 
 
 def airs_of(device: Mapping[str, Any]) -> tuple[float, ...]:
@@ -268,17 +398,20 @@ def of_area(name: str, device: Mapping[str, Any], sides: Sequence, **more: Any) 
     kind = KINDS.get(device.get("kind"))
     stated = kind.stated(device) if kind and any(set(way.keys) <= device.keys() for way in kind.ways) else device
     force = to_si(stated["restoring_force_uN"], "uN") if "restoring_force_uN" in stated else None
-    airs, touchdowns = airs_of(device), device.get("touchdowns", 1)
-    return Stopper(name, surfaces, members, airs, area, force, touchdowns, **more)
+    return Stopper(name, surfaces, members, airs_of(device), area, force, **_often(device), **more)
 
 
 def of_middle(name: str, device: Mapping[str, Any], sides: Sequence, **more: Any) -> Bridge:
     """Question about a bridge, as of `of_numbers`."""
-    more.pop("constant", None)  # counts in dry air alone, where bridges were not learnt
     surfaces, members = zip(*sides, strict=True)
     sizes, length = _sizes(device)
     airs, stress = airs_of(device), to_si(device["residual_stress_MPa"], "MPa")
-    return Bridge(name, surfaces, members, airs, *sizes, stress, length, device.get("touchdowns", 1), **more)
+    return Bridge(name, surfaces, members, airs, *sizes, stress, length, **_often(device), **more)
+
+
+def _often(device):
+    """Touchdowns of a device, if it states them."""
+    return {"touchdowns": device["touchdowns"]} if "touchdowns" in device else {}
 
 
 def _sizes(device):
@@ -292,4 +425,4 @@ def of_numbers(name: str, device: Mapping[str, Any], sides: Sequence, **more: An
     surfaces, members = zip(*sides, strict=True)
     sizes, length = _sizes(device)
     airs, more = airs_of(device), more | {"added": energy_of(device, sizes[1])}
-    return Question(name, surfaces, members, airs, *sizes, length, device.get("touchdowns", 1), **more)
+    return Question(name, surfaces, members, airs, *sizes, length, **_often(device), **more)

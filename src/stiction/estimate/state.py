@@ -11,8 +11,10 @@ Flooded flats of the area A would hold a stopper with the force :math:`p A`.
 
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
-from stiction.constants import GAS_CONSTANT
+from stiction.constants import GAS_CONSTANT, WATER_MOLECULE, molar_volume, surface_energy
+from stiction.contact.air import MOLECULES
 from stiction.estimate.statistics import Heights
 
 #: Names of the coordinates, for messages: of both, of a beam and of a stopper.
@@ -37,6 +39,12 @@ OF_PATCHES = (
     "humidity",
     "curvature of the summits (from Hurst exponent, corner and cut-off)",
 )
+#: Name of the coordinate of other solids beside these.
+OF_SOLIDS = "attraction of the solids beside that of the water (from Hamaker constant and contact angles)"
+
+
+#: Height of the thinnest film that is a liquid [m]. A run bounds thinner ones, which are not learnt.
+THINNEST = MOLECULES * WATER_MOLECULE
 
 
 @dataclass(frozen=True)
@@ -47,12 +55,9 @@ class Film:
     energy: float  #: Γ = γ (cos θ₁ + cos θ₂) [J m⁻²]
 
 
-def film(humidity: float, temperature: float, wetting: float, water: tuple[float, float]) -> Film:
-    """Film at a humidity [-] and temperature [K], with cos θ₁ + cos θ₂ [-].
-
-    ``water`` has surface energy [N m⁻¹] and molar volume [m³ mol⁻¹]. See `stiction.contact.meniscus`.
-    """
-    energy, volume = water[0] * wetting, water[1]
+def film(humidity: float, temperature: float, wetting: float) -> Film:
+    """Film at a humidity [-] and temperature [K], with cos θ₁ + cos θ₂ [-]. See `stiction.contact.meniscus`."""
+    energy, volume = surface_energy(temperature) * wetting, molar_volume(temperature)
     return Film(energy * volume / (-GAS_CONSTANT * temperature * math.log(humidity)), energy)
 
 
@@ -89,6 +94,8 @@ class TipState:
     stiffness: float  #: K = E t³ / h² [N m⁻¹]
     width: float  #: [m]
     modulus: float  #: E of the solids [Pa]
+    attraction: float = 1.0  #: r of `stiction.estimate.solids` [-]
+    names: ClassVar[tuple[str, ...]] = COORDINATES
 
     @property
     def flooded_slope(self) -> float:
@@ -116,6 +123,8 @@ class PatchState:
     film: Film
     area: float  #: [m²]
     modulus: float  #: E of the solids [Pa]
+    attraction: float = 1.0  #: r of `stiction.estimate.solids` [-]
+    names: ClassVar[tuple[str, ...]] = OF_PATCHES
 
     @property
     def flooded_force(self) -> float:

@@ -123,6 +123,24 @@ def test_a_material_in_dry_air_has_its_hamaker_constant_among_the_inputs():
     assert float(row["hamaker_constant_zJ"]) == pytest.approx(250)
 
 
+def test_solids_and_water_are_among_the_inputs_where_they_differ():
+    more = {"solid": {"young_modulus_GPa": 120}, "water": {"temperature_K": 320}}
+    angle = {"surfaces": {"Sub1": {"material": "Oily"}}, "materials": {"Oily": {"contact_angle_deg": 40}}}
+    own, other = dataset({0.6: safe()}), dataset({0.6: safe()}, Graph(Plan(stiction.load(FILE, more, angle))))
+    stated = FILE | more | angle | {"surfaces": FILE["surfaces"] | angle["surfaces"]}
+    asked = replace(questions(stated, known()[0])["Lever"], members=({}, {}))
+    of_file = answer(asked, *known()).chosen.length
+    assert float(other.estimate.sel(humidity=0.6, share=1e-3)) == pytest.approx(of_file, rel=1e-6)
+    numbers = {"modulus": 120e9, "beam_modulus": 120e9, "temperature": 320, "wetting": 1 + np.cos(np.radians(40))}
+    for name, value in numbers.items():
+        assert float(other[name]) == pytest.approx(value)
+        assert name not in own
+    assert "hamaker_constant_in_water" not in other
+    (row, *_) = csv.DictReader(io.StringIO(tables.table({"Lever": other}).csv))
+    assert [float(row[key]) for key in ("modulus_GPa", "temperature_K")] == pytest.approx([120, 320])
+    assert float(row["wetting"]) == pytest.approx(numbers["wetting"])
+
+
 def test_what_was_not_learnt_has_its_reason_in_all_airs_and_a_section_without_a_table():
     of_strips = dataset({0.6: safe(), 0.8: safe()}, planned(strip_um=1))
     assert of_strips.refused.values.tolist() == ["strip_um was not learnt"] * 2

@@ -11,8 +11,9 @@ from plans import job_settings
 
 from stiction.config.files import load
 from stiction.config.units import in_si
+from stiction.constants import surface_energy
 from stiction.contact.environment import Water
-from stiction.contact.meniscus import film, surface_energy
+from stiction.contact.meniscus import film
 from stiction.devices.limits import rules as limits
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from typing import Any, NamedTuple
 
+from stiction.command.at_once import life
 from stiction.command.output_streams import say
 from stiction.config.units import from_si
 from stiction.contact.air import DRY, DRY_AIR, Air
@@ -14,7 +15,18 @@ from stiction.estimate.answer import CHOSEN, FRACTIONS, Estimate, answer
 from stiction.estimate.bridge import Bridge
 from stiction.estimate.force import Stopper
 from stiction.estimate.length import Impossible, NotLearnt
-from stiction.estimate.question import Question, of_area, of_middle, of_numbers, questions, refuse_impossible, surface
+from stiction.estimate.question import (
+    ENDS,
+    Question,
+    of_area,
+    of_middle,
+    of_numbers,
+    questions,
+    refuse_impossible,
+    solids_of,
+    surface,
+    temperature_of,
+)
 from stiction.estimate.table import content, known
 
 #: Options of a device on a described surface: key in a file, metavar, help, default.
@@ -33,8 +45,13 @@ OPTIONS = {
     "voltage": ("voltage_V", "V", "voltage in contact; needs --dielectric", None),
     "stress": ("residual_stress_MPa", "MPA", "tensile stress of a bridge, in place of a cantilever", None),
     "force": ("restoring_force_uN", "UN", "restoring force of a stopper, for the probability that it sticks", None),
+    "modulus": ("young_modulus_GPa", "GPA", "Young's modulus of both sides (default: 164)", None),
+    "temperature": ("temperature_K", "K", "temperature of the water (default: 300)", None),
 }
 _OF_SURFACE = ("rms", "like", "hurst", "corner", "cutoff", "skewness", "kurtosis")
+#: Sections of files that have the numbers of options, and materials of both sides by their contact angles.
+_OF_SECTIONS = {"modulus": "solid", "temperature": "water"}
+_SIDES = ("Upper", "Lower")
 #: Opposite surface without a file.
 OPPOSITE = "Sub1"
 #: What the command does.
@@ -51,6 +68,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--contact", type=float, nargs=2, metavar="UM", help=words)
     words = "thickness and relative permittivity of the dielectric"
     parser.add_argument("--dielectric", type=float, nargs=2, metavar=("NM", "PERMITTIVITY"), help=words)
+    words = "contact angles of water on both sides, the underside first"
+    parser.add_argument("--angles", type=float, nargs=2, metavar="DEG", help=words)
     words = "relative humidities, such as 0.45, or dry"
     parser.add_argument("--rh", type=_humidity, nargs="+", metavar="RH", help=words)
     parser.add_argument("--touchdowns", type=int, default=1, metavar="N", help="number of touchdowns (default: 1)")
@@ -138,12 +157,22 @@ def _of_options(arguments, library):
             raise Impossible(f"--{name} is missing{_HINT}")
     entry, device = _stated(arguments)
     refuse_impossible(entry | device | device.get("dielectric", {}), _NAMES)
+    _refuse_beyond(arguments)
     if (arguments.skewness is None) != (arguments.kurtosis is None):
         raise Impossible("--skewness and --kurtosis must come together")
-    if arguments.hurst is not None and arguments.hurst > 1:
-        raise Impossible(f"--hurst must be at most 1, got {arguments.hurst}")
     sides = [surface({"like": LIKE} | entry, library), surface(library[OPPOSITE], library)]
-    return kind.question(_NAME, device, sides, averaged=arguments.like is None)
+    sections = _sections(arguments)
+    solids = solids_of(_SIDES if arguments.angles else (None, None), sections)
+    more = {"averaged": arguments.like is None, "solids": solids} | temperature_of(sections)
+    return kind.question(_NAME, device, sides, **more)
+
+
+def _refuse_beyond(arguments):
+    """Refuse options of surface, solids and water that no configuration can have."""
+    for name in (*_OF_SURFACE, *_OF_SECTIONS):
+        ends, value = ENDS.get(OPTIONS[name][0]), getattr(arguments, name)
+        if ends and value is not None and (refusal := ends.refusal(value)):
+            raise Impossible(f"--{name} {refusal}")
 
 
 class _Kind(NamedTuple):
@@ -170,9 +199,23 @@ def _kind_of(arguments):
     return _CANTILEVER if arguments.stress is None else _BRIDGE
 
 
+def _sections(arguments):
+    """Sections of solids and water that options state, as in files."""
+    found = {}
+    for name, section in _OF_SECTIONS.items():
+        if (value := getattr(arguments, name)) is not None:
+            found[section] = {OPTIONS[name][0]: value}
+    if arguments.angles:
+        found["materials"] = {
+            side: {"contact_angle_deg": angle} for side, angle in zip(_SIDES, arguments.angles, strict=True)
+        }
+    return found
+
+
 def _stated(arguments):
     """Entries of the surface and of the device that options state, by the keys of files."""
-    stated = {OPTIONS[name][0]: getattr(arguments, name) for name in OPTIONS if getattr(arguments, name) is not None}
+    names = [name for name in OPTIONS if name not in _OF_SECTIONS and getattr(arguments, name) is not None]
+    stated = {OPTIONS[name][0]: getattr(arguments, name) for name in names}
     entry = {key: stated.pop(key) for key in [OPTIONS[name][0] for name in _OF_SURFACE] if key in stated}
     device = stated | {"humidities": arguments.rh, "touchdowns": arguments.touchdowns}
     if arguments.contact:
@@ -189,10 +232,14 @@ def file_of(arguments: argparse.Namespace) -> str:
     kind = _kind_of(arguments).name
     air = {"humidities": [Air(each).name for each in arguments.rh]}
     pair = {"beam": "Mine", "substrate": OPPOSITE, "gap_um": arguments.gap or _GAP} | air
+    surfaces = {"Mine": {"like": LIKE} | entry}
+    if arguments.angles:
+        surfaces = {"Mine": surfaces["Mine"] | {"material": _SIDES[0]}, OPPOSITE: {"material": _SIDES[1]}}
     return "\n".join(
         (
             "run: {pairs: [mine], studies: []}",
-            f"surfaces:\n  Mine: {_in_yaml({'like': LIKE} | entry)}",
+            *(f"{name}: {_in_yaml(section)}" for name, section in _sections(arguments).items()),
+            "\n".join(["surfaces:", *(f"  {name}: {_in_yaml(each)}" for name, each in surfaces.items())]),
             f"pairs:\n  mine: {_in_yaml(pair)}",
             f"devices:\n  Mine: {_in_yaml({'kind': kind, 'pair': 'mine'} | device | air)}",
         )
@@ -214,6 +261,7 @@ def _humidity(word):
 
 #: Options beside `OPTIONS`, and what they are without being stated. Keys of all by their options.
 _MORE = {"contact": "contact_um", "dielectric": "dielectric", "rh": "humidities", "touchdowns": "touchdowns"}
+_MORE |= {"angles": "contact_angle_deg"}
 _DEFAULTS = {"width": 30.0, "touchdowns": 1}
 _NAMES = {key: f"--{name}" for name, key in [*((name, each[0]) for name, each in OPTIONS.items()), *_MORE.items()]}
 _NAMES |= dict.fromkeys(("thickness_nm", "permittivity"), "--dielectric")
@@ -239,17 +287,22 @@ def shown(estimate: Estimate) -> Iterator[str]:
         yield f"  1 in {1 / row.fraction:<10.0f}  {_number(row.size, asked):>8}     {ends}"
     if estimate.stuck is not None:
         value, low, high = (_percent(fraction, asked.most) for fraction in estimate.stuck)
-        yield f"  At {_number(asked.size, asked)} {symbol}, {value} stick (95 %: {low} to {high})."
+        yield f"  At {life.as_stated(asked.size, asked.unit)} {symbol}, {value} stick (95 %: {low} to {high})."
     yield f"  {chosen(estimate)}."
+    yield from (f"  {sentence}" for sentence in life.sentences(estimate, symbol))
 
 
 def chosen(estimate: Estimate, subject: str = "") -> str:
     """Interval of the size for 1 in 1000, and the end to use."""
     (low, high), asked = estimate.chosen.intervals["90"], estimate.question
     least, most = _number(low, asked), _number(high, asked)
-    safe = f"at least {most}" if isinstance(asked, Stopper) else f"at most {least}"
-    symbol = _WORDS[asked.unit][1]
-    return f"1 in {1 / CHOSEN:.0f}{subject} sticks between {least} and {most} {symbol} (90 %): use {safe}"
+    learnt = f"1 in {1 / CHOSEN:.0f}{subject} sticks between {least} and {most} {_WORDS[asked.unit][1]} (90 %)"
+    if estimate.is_fast:
+        return f"{learnt} if it separates slowly: menisci hold more in a shock, and a run says what to use"
+    if estimate.drying:
+        longest = life.bound(estimate.use, asked.unit)
+        return f"{learnt}: use at most {longest}, or it can collapse while {estimate.drying} dries"
+    return f"{learnt}: use {f'at least {most}' if estimate.is_force else f'at most {least}'}"
 
 
 #: Largest fraction that is shown.

@@ -20,8 +20,8 @@ from stiction.config.merging import section_at
 from stiction.config.messages import ConfigError, Problem, one_line
 from stiction.config.mission.conditions import CONDITIONS, DECIMALS, airs, humidity_of, kelvin
 from stiction.config.mission.stays import with_bounds
+from stiction.constants import ZERO_CELSIUS
 from stiction.contact.air import humid, is_humid
-from stiction.contact.meniscus import ZERO_CELSIUS
 
 #: Keys of the air of a condition, of which it has one.
 _AIR = "humidity", "dew_point_C"

@@ -3,7 +3,8 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from stiction.contact.meniscus import ZERO_CELSIUS, humidity_at
+from stiction.constants import ZERO_CELSIUS
+from stiction.contact.meniscus import humidity_at
 
 #: Key of the conditions of a device.
 CONDITIONS = "conditions"

@@ -9,10 +9,10 @@ from collections.abc import Mapping, Sequence
 
 from stiction.beam.foundation import LONGER, TOO_EARLY
 from stiction.constants import WATER_MOLECULE
+from stiction.contact.air import MOLECULES as LIQUID
 from stiction.contact.air import is_humid
 from stiction.contact.full.smooth_pairs import shortfall
 from stiction.contact.materials import COATING, COATING_ATTRACTION, OF_COATINGS, PROPERTIES
-from stiction.contact.meniscus import MOLECULES as LIQUID
 from stiction.devices.limits.limit import Limit, Side
 
 #: Largest plastic share of the contact area. Pair c has 58 %, and its beams stick at 72 % of the predicted length.

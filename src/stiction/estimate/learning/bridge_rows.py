@@ -25,7 +25,7 @@ def states_of(point: Point, numbers: Mapping[str, Any], modulus: float) -> list[
     heights, width = of_pair(point.sides), to_si(point.width, "um")
     films = [Film(height, 2 * WATER_SURFACE_ENERGY * wetting) for height, wetting in numbers["airs"]]
     return [
-        MiddleState(heights, film, thickness, gap, width, stress, modulus)
+        MiddleState(heights, film, thickness, gap, width, stress, modulus, modulus)
         for film, (thickness, gap, stress) in zip(films, numbers["sizes"].tolist(), strict=True)
     ]
 
@@ -41,9 +41,9 @@ def of_middle(state: MiddleState, lengths: np.ndarray) -> dict[str, float]:
 MOST, TAIL = 0.55, 0.1
 
 
-def are_known(lengths: np.ndarray, part: float = MOST) -> np.ndarray:
+def are_known(lengths: np.ndarray, share: float = MOST) -> np.ndarray:
     """Whether a part of some lengths (..., n) is finite (...,)."""
-    return np.isfinite(lengths).mean(axis=-1) > part
+    return np.isfinite(lengths).mean(axis=-1) > share
 
 
 def rows_of_middles(folder: Path, name: str, modulus: float) -> DesignRows:
@@ -59,10 +59,10 @@ def rows_of_middles(folder: Path, name: str, modulus: float) -> DesignRows:
     return DesignRows(np.array(coordinates), columns, np.array(surface), columns["slope"])
 
 
-def with_changes(folder: Path, name: str, part: float = MOST) -> Iterator[tuple[Point, dict[str, Any]]]:
+def with_changes(folder: Path, name: str, share: float = MOST) -> Iterator[tuple[Point, dict[str, Any]]]:
     """Points of some sets whose lengths by full contact are known."""
     for point, numbers in stored(folder / FOLDER, name):
-        if "changed" in numbers and are_known(np.array([numbers["lengths"][0], numbers["changed"]]), part).all():
+        if "changed" in numbers and are_known(np.array([numbers["lengths"][0], numbers["changed"]]), share).all():
             yield point, numbers
 
 

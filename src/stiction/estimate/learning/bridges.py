@@ -117,15 +117,15 @@ class TrainingStrips:
         at = At(**{name: str(value) for name, value in patch._asdict().items()})
         settings = replace(in_si(Settings, GROUND.settings(plan, at, strips)), seed=seed)
         surfaces = surfaces_of(plan)
-        found = contact.compute(surfaces, f"estimate{point.number}", "NG", settings)
-        strips = with_correlations(found, surfaces, (device.strip, device.width))
+        strips_drawn = contact.compute(surfaces, f"estimate{point.number}", "NG", settings)
+        strips = with_correlations(strips_drawn, surfaces, (device.strip, device.width))
         return cls(strips, water_of(plan), device, Truncation(**plan.config["chaos"]), seed, point.number)
 
     def lengths(self, height: float, sizes: np.ndarray, number: int, change: Correction | None = None) -> np.ndarray:
         """Lengths that the middle of a number of bridges holds in a film of a height [m], of sizes (3,) [SI]."""
         air, _ = air_of(height, 1.0, self.water.temperature)
-        own = replace(self, water=replace(self.water, correction=change))
-        laws = sticking.fitted_laws(own.contact, air, own, (self.device.strip, self.device.width))
+        corrected = replace(self, water=replace(self.water, correction=change))
+        laws = sticking.fitted_laws(corrected.contact, air, corrected, (self.device.strip, self.device.width))
         bridge = replace(self.device, **dict(zip(("thickness", "gap", "residual_stress"), sizes, strict=True)))
         drawn = laws.draw(opening.LAWS, stream(self.seed, "estimate", "mesh", self.number))
 
@@ -151,7 +151,9 @@ def ratio_of_energies(point: Point, plan: Plan, height: float, seed: int) -> lev
 
 def correction_of(energy: levels.Ratio, of_patches: Mapping[str, Any], height: float, water: Water) -> Correction:
     """Changes of energies and of largest attractions that a run applies."""
-    changes = [ElasticChange(one["ratio"], max(float(one["power"]), 1.0)) for one in (vars(energy), of_patches)]
+    changes = [
+        ElasticChange(numbers["ratio"], max(float(numbers["power"]), 1.0)) for numbers in (vars(energy), of_patches)
+    ]
     in_air = [ElasticChange(np.array([change.ratio]), np.array([change.power])) for change in changes]
     return Correction(np.array([air_of(height, 1.0, water.temperature)[0]]), *in_air, nearest=True)
 
@@ -163,16 +165,16 @@ def computed(point: Point, name: str, valid: dict[str, Any], of_patches: Path) -
     strips = TrainingStrips.of(point, plan, STRIPS, effort.seed)
     each = zip(airs[:, 0], sizes, strict=True)
     lengths = np.array([strips.lengths(height, size, effort.patches) for height, size in each])
-    found = {"airs": airs, "sizes": sizes, "lengths": lengths.astype(np.float32)}
+    results = {"airs": airs, "sizes": sizes, "lengths": lengths.astype(np.float32)}
     if point.number % effort.every == 0:
         energy = ratio_of_energies(point, plan, airs[0, 0], effort.seed)
-        found |= {"ratio": energy.ratio, "ratio_error": energy.error, "power": energy.power}
+        results |= {"ratio": energy.ratio, "ratio_error": energy.error, "power": energy.power}
         with np.load(of_patches / name / f"{point.number:04}.npz") as patch:
             change = correction_of(energy, patch, airs[0, 0], strips.water)
         if np.isfinite([change.energy.ratio, change.pull_off.ratio]).all():
             changed = strips.lengths(airs[0, 0], sizes[0], effort.patches, change)
-            found["changed"] = changed.astype(np.float32)
-    return found
+            results["changed"] = changed.astype(np.float32)
+    return results
 
 
 if __name__ == "__main__":

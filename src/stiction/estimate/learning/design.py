@@ -66,13 +66,13 @@ def points(number: int, seed: int, law: SurfaceLaw) -> list[Point]:
     """First feasible points of a Sobol sequence, or those of the paper."""
     if law is SurfaceLaw.PAPER:
         return _of_paper()[:number]
-    found: list[Point] = []
+    feasible: list[Point] = []
     for row in _sobol(_COLUMNS, seed).random(1 << (3 * number).bit_length()):
-        if (point := _point(len(found), row, law is SurfaceLaw.TYPICAL)) is not None:
-            found.append(point)
-        if len(found) == number:
-            return found
-    raise ValueError(f"only {len(found)} of {number} drawn surfaces are feasible")
+        if (point := _point(len(feasible), row, law is SurfaceLaw.TYPICAL)) is not None:
+            feasible.append(point)
+        if len(feasible) == number:
+            return feasible
+    raise ValueError(f"only {len(feasible)} of {number} drawn surfaces are feasible")
 
 
 def _of_paper():
@@ -86,13 +86,13 @@ def _of_paper():
 
 def _point(number, row, typical):
     """Point of a row of uniform numbers, ``None`` if a surface is not feasible."""
-    of, sides, spectrum = dict(enumerate(row)), [], _like if typical else _spectrum
+    shares, sides, spectrum = dict(enumerate(row)), [], _like if typical else _spectrum
     for first, rms in ((0, "ln_rms"), (6, "ln_rms_of_substrate")):
-        form = [_within(name, of[first + k]) for k, name in ((4, "skewness"), (5, "tailed"))]
+        form = [_within(name, shares[first + k]) for k, name in ((4, "skewness"), (5, "tailed"))]
         sides.append(
-            _section(_within(rms, of[first]), spectrum(*row[first + 1 : first + 4]), *form, _STEEPEST[typical])
+            _section(_within(rms, shares[first]), spectrum(*row[first + 1 : first + 4]), *form, _STEEPEST[typical])
         )
-    sizes = _within("ln_stiffness", of[12]), round(_within("ln_width", of[13]), 2)
+    sizes = _within("ln_stiffness", shares[12]), round(_within("ln_width", shares[13]), 2)
     return None if None in sides else Point(number, tuple(sides), *sizes)
 
 

@@ -20,8 +20,7 @@ from stiction.config.reading import paper
 from stiction.config.units import from_si, in_si, to_si
 from stiction.constants import HAMAKER_CONSTANT
 from stiction.contact.air import DRY, DRY_AIR
-from stiction.contact.correction import NONE, Correction, ElasticChange, TipChanges
-from stiction.devices.arcs import longest_free, tip_slope
+from stiction.contact.correction import ElasticChange, TipChanges
 from stiction.estimate.learning import training
 from stiction.estimate.learning.design import Point, SurfaceLaw
 from stiction.estimate.learning.training import (
@@ -33,10 +32,11 @@ from stiction.estimate.learning.training import (
     main,
     surfaces_of,
     water_of,
+    with_materials,
 )
 from stiction.plan.plan import Plan
 from stiction.plan.stage import At
-from stiction.stages.contact import contact, curves, full_contact, tips_in_full_contact
+from stiction.stages.contact import contact, full_contact, tips_in_full_contact
 from stiction.stages.contact.changes.patches import TIPS
 from stiction.stages.contact.pairs import Settings
 from stiction.stages.devices.contact_names import patch_of_tips
@@ -47,8 +47,6 @@ from stiction.streams import stream
 FOLDER = "dry"
 #: Least and largest Hamaker constant of two solids in dry air [zJ], about half and twice that of polysilicon.
 CONSTANTS = (90.0, 380.0)
-#: Name of the material of both surfaces.
-_MATERIAL = "M"
 #: Width of strips in full contact [m], as in humid air.
 _NARROW = to_si(12, "um")
 
@@ -66,9 +64,9 @@ class DryEffort(TrainingEffort):
 
 def _effort(name, points, stoppers, states, patches, strips):
     """Effort of a set, with the first points of a set in humid air."""
-    of = training.SETS[name]
-    tips = min(of.tips, _MOST)
-    return DryEffort(points, of.seed, of.law, tips, of.tips_by_width, states, 1, patches, strips, stoppers)
+    humid = training.SETS[name]
+    tips = min(humid.tips, _MOST)
+    return DryEffort(points, humid.seed, humid.law, tips, humid.tips_by_width, states, 1, patches, strips, stoppers)
 
 
 #: Sets of points by name, as in humid air.
@@ -108,11 +106,8 @@ def base() -> dict[str, Any]:
 
 def with_constant(plan: Plan, constant: float) -> Plan:
     """Plan of a point with a Hamaker constant of both solids [J]."""
-    surfaces = {side: plan.config["surfaces"][side] | {"material": _MATERIAL} for side in "ST"}
     zj = {medium: round(from_si(constant, "zJ"), 4) for medium in HAMAKER_CONSTANT}
-    others = {name: entry for name, entry in plan.config["surfaces"].items() if name not in surfaces}
-    material = {"materials": {_MATERIAL: {"hamaker_constant_zJ": zj}}}
-    return Plan(plan.config | {"surfaces": others | surfaces} | material)
+    return with_materials(plan, *[{"hamaker_constant_zJ": zj}] * 2)
 
 
 def drawn(plan: Plan, name: str, number: int) -> TrainingTips:
@@ -121,17 +116,13 @@ def drawn(plan: Plan, name: str, number: int) -> TrainingTips:
     at = At(**{key: str(value) for key, value in patch_of_tips(plan, case)._asdict().items()})
     tips = effort.tips + round(effort.tips_by_width / to_si(plan.config["devices"][DEVICE]["width_um"], "um"))
     settings = replace(in_si(Settings, TIPS.settings(plan, at, tips)), seed=effort.seed)
-    found = contact.compute(surfaces_of(plan), f"estimate{number}", "NG", settings)
-    return TrainingTips(found, water_of(plan), in_si(DesignedBeam, section_of_beam(plan, DEVICE)))
+    dataset = contact.compute(surfaces_of(plan), f"estimate{number}", "NG", settings)
+    return TrainingTips(dataset, water_of(plan), in_si(DesignedBeam, section_of_beam(plan, DEVICE)))
 
 
 def slopes_of(tips: TrainingTips, changes: TipChanges | None = None) -> np.ndarray:
     """Slopes up to which tips stick in dry air, by stiffness and tip [-]."""
-    dry = DRY_AIR.humidity
-    change = None if changes is None else Correction(np.array([dry]), NONE, NONE, changes)
-    at, forces = curves.tip_forces(tips.contact, dry, replace(tips.water, correction=change))
-    beams = [replace(tips.device, gap=tips.device.gap / factor**0.5).beam for factor in FACTORS]
-    return np.array([tip_slope(longest_free(at, forces, beam), beam.gap) for beam in beams])
+    return tips.slopes_in(DRY_AIR.humidity, tips.water, changes)
 
 
 def full_contact_of(plan: Plan, name: str, number: int) -> dict[str, np.ndarray]:
@@ -139,16 +130,16 @@ def full_contact_of(plan: Plan, name: str, number: int) -> dict[str, np.ndarray]
     stated = full_contact.settings_in_dry_air(plan, At(pair=PAIR)) | plan.devices.all_tips(PAIR)
     settings = in_si(tips_in_full_contact.Settings, stated | {"most": 0, "on_summits": 0})
     settings = replace(settings, strips=SETS[name].strips[0], seed=SETS[name].seed)
-    own = replace(settings, beam=replace(settings.beam, width=min(settings.beam.width, _NARROW)))
-    study = tips_in_full_contact.compute_for_devices(surfaces_of(plan), f"estimate{number}", own)
+    narrow = replace(settings, beam=replace(settings.beam, width=min(settings.beam.width, _NARROW)))
+    study = tips_in_full_contact.compute_for_devices(surfaces_of(plan), f"estimate{number}", narrow)
     full, summits = tips_in_full_contact.models(study)
     return {"slope": study.slope.values, "full": full[:, 0], "summits": summits[:, 0]}
 
 
 def changes_of(slope: np.ndarray, full: np.ndarray, summits: np.ndarray) -> TipChanges:
     """Changes of tips that a run applies in dry air, from slopes (s,) and attractions (n, s)."""
-    found = tip_ratios(full[:, None], summits[:, None])
-    return TipChanges(slope, ElasticChange(found.means, np.maximum(found.powers, 1), in_run(found.error, len(full))))
+    ratios = tip_ratios(full[:, None], summits[:, None])
+    return TipChanges(slope, ElasticChange(ratios.means, np.maximum(ratios.powers, 1), in_run(ratios.error, len(full))))
 
 
 def in_run(error: np.ndarray, strips: int) -> np.ndarray:
@@ -169,10 +160,10 @@ def computed(point: Point, name: str, valid: dict[str, Any]) -> dict[str, Any]:
     """Numbers of one point of a set."""
     plans = [with_constant(training.plan_of(point, valid), each) for each in constants(point, name)]
     tips = [drawn(plan, name, point.number) for plan in plans]
-    found = {"constants": constants(point, name), "slopes": np.array([slopes_of(each) for each in tips], np.float32)}
+    results = {"constants": constants(point, name), "slopes": np.array([slopes_of(each) for each in tips], np.float32)}
     of_full = full_contact_of(plans[0], name, point.number)
     changed = slopes_of(tips[0], changes_of(**of_full))[FACTORS.index(1.0)]
-    return found | of_full | {"changed": changed.astype(np.float32)}
+    return results | of_full | {"changed": changed.astype(np.float32)}
 
 
 def control() -> dict[str, list[float]]:

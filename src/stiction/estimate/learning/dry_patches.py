@@ -55,17 +55,19 @@ def forces_of(plan: Plan, name: str, number: int) -> np.ndarray:
     patch = patch_of(plan, Case(case_id(patches.DEVICE, DRY_AIR.humidity)))
     at = At(**{key: str(value) for key, value in patch._asdict().items()})
     settings = replace(in_si(Settings, GROUND.settings(plan, at, SETS[name].patches)), seed=SETS[name].seed)
-    found = contact.compute(surfaces_of(plan), f"estimate{number}", "NG", settings)
-    return curves.pull_offs(found, DRY_AIR.humidity, water_of(plan))
+    dataset = contact.compute(surfaces_of(plan), f"estimate{number}", "NG", settings)
+    return curves.pull_offs(dataset, DRY_AIR.humidity, water_of(plan))
 
 
 def change_of(plan: Plan, name: str, number: int) -> dict[str, float]:
     """Ratio of the mean pull-off in full contact to that on summits, and power of its scatter, NaN if not found."""
     settings = in_si(full_contact.Settings, full_contact.settings_in_dry_air(plan, At(pair=PAIR)))
-    own = replace(settings, strips=SETS[name].strips[1], most=0, seed=SETS[name].seed)
+    settings_drawn = replace(settings, strips=SETS[name].strips[1], most=0, seed=SETS[name].seed)
     try:
         study = full_contact.compute(
-            surfaces_of(plan), f"estimate{number}", replace(own, beam=replace(own.beam, width=_WIDTH))
+            surfaces_of(plan),
+            f"estimate{number}",
+            replace(settings_drawn, beam=replace(settings_drawn.beam, width=_WIDTH)),
         )
     except (NotConverged, ValueError):
         return dict.fromkeys(("ratio", "ratio_error", "power"), np.nan)
@@ -81,8 +83,8 @@ def computed(point: Point, name: str, valid: dict[str, Any]) -> dict[str, Any]:
     constants = dry.constants(point, name)
     plans = [dry.with_constant(patches.plan_of(point, sides, valid), each) for each in constants]
     forces = np.array([forces_of(plan, name, point.number) for plan in plans], np.float32)
-    found = {"constants": constants, "sides": np.array(sides), "forces": forces}
-    return found | change_of(plans[0], name, point.number)
+    results = {"constants": constants, "sides": np.array(sides), "forces": forces}
+    return results | change_of(plans[0], name, point.number)
 
 
 def control() -> dict[str, list[float]]:

@@ -77,12 +77,12 @@ def rows_of_full(folder: Path, name: str, modulus: float) -> DesignRows:
 def rows_of_ratios(folder: Path, name: str, modulus: float) -> DesignRows:
     """Rows of the logarithm of the ratio, and of the power, of the change of pull-off forces by full contact."""
     every = stored(folder / dry_patches.FOLDER, name, dry_patches.SETS)
-    found = [(point, numbers) for point, numbers in every if np.isfinite(numbers["ratio"])]
-    coordinates = np.array([patches_of(*one, modulus)[0].coordinates for one in found])
-    changes = [change_of(numbers) for _, numbers in found]
+    settled = [(point, numbers) for point, numbers in every if np.isfinite(numbers["ratio"])]
+    coordinates = np.array([patches_of(*point_and_numbers, modulus)[0].coordinates for point_and_numbers in settled])
+    changes = [change_of(numbers) for _, numbers in settled]
     values = {"ratio": np.log([change.ratio for change in changes]), "power": np.array([c.power for c in changes])}
-    noise = np.array([float(numbers["ratio_error"]) for _, numbers in found])
-    return DesignRows(coordinates, values, np.array([point.number for point, _ in found]), noise)
+    noise = np.array([float(numbers["ratio_error"]) for _, numbers in settled])
+    return DesignRows(coordinates, values, np.array([point.number for point, _ in settled]), noise)
 
 
 def tested(folder: Path, sets: str, modulus: float, score: float, processes: Processes) -> Iterator[Tested]:
@@ -91,7 +91,7 @@ def tested(folder: Path, sets: str, modulus: float, score: float, processes: Pro
         if np.isfinite(numbers["changed"]).all():
             tip = tips_of(point, float(numbers["constants"][0]), modulus)[FACTORS.index(1.0)]
             true = lengths_of(of_tips(numbers["changed"]), math.log(1.5))
-            yield beside(point, true, score, lambda of=tip, at=point: lengths(of, 1.0, *processes(at)))
+            yield beside(point, true, score, lambda tip=tip, at=point: lengths(tip, 1.0, *processes(at)))
 
 
 def tested_forces(folder: Path, sets: str, modulus: float, score: float, processes: Processes) -> Iterator[Tested]:
@@ -101,4 +101,4 @@ def tested_forces(folder: Path, sets: str, modulus: float, score: float, process
             patch, pressures = patches_of(point, numbers, modulus)[0], numbers["forces"][0].astype(float)
             changed = change_of(numbers).of(pressures)(pressures)
             true = lengths_of(of_tips(_relative(changed, patch)), -math.log(patch.flat_force))
-            yield beside(point, true, score, lambda of=patch, at=point: reciprocals(of, *processes(at)))
+            yield beside(point, true, score, lambda patch=patch, at=point: reciprocals(patch, *processes(at)))

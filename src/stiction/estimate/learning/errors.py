@@ -62,7 +62,7 @@ def tested(folder: Path, sets: str, modulus: float, score: float, processes: Pro
             continue
         state = states_of(point, numbers["airs"][:1], modulus)[0][FACTORS.index(1.0)]
         true = lengths_of(of_tips(numbers["changed"]), math.log(1.5))
-        yield beside(point, true, score, lambda of=state, at=point: lengths(of, 1.0, *processes(at)))
+        yield beside(point, true, score, lambda state=state, at=point: lengths(state, 1.0, *processes(at)))
 
 
 def tested_forces(folder: Path, sets: str, modulus: float, score: float, processes: Processes) -> Iterator[Tested]:
@@ -73,7 +73,7 @@ def tested_forces(folder: Path, sets: str, modulus: float, score: float, process
         patch, pressures = patches_of(point, numbers, modulus)[0], numbers["forces"][0].astype(float)
         changed = change_of(numbers).of(pressures)(pressures)
         true = lengths_of(of_forces(changed, patch), -math.log(patch.flooded_force))
-        yield beside(point, true, score, lambda of=patch, at=point: reciprocals(of, *processes(at)))
+        yield beside(point, true, score, lambda patch=patch, at=point: reciprocals(patch, *processes(at)))
 
 
 def tested_bridges(folder: Path, sets: str, modulus: float, score: float, processes: Processes) -> Iterator[Tested]:
@@ -81,16 +81,16 @@ def tested_bridges(folder: Path, sets: str, modulus: float, score: float, proces
     for point, numbers in with_changes(folder, sets, TAIL):
         state, *_ = states_of_bridges(point, numbers, modulus)
         true = lengths_of(of_middle(state, numbers["changed"]), math.log(state.flooded_length))
-        yield beside(point, true, score, lambda of=state, at=point: lengths_of_bridges(of, *processes(at)))
+        yield beside(point, true, score, lambda state=state, at=point: lengths_of_bridges(state, *processes(at)))
 
 
 def beside(point: Point, true: Lengths, score: float, estimate: Callable[[], Lengths]) -> Tested:
     """Tested length of a point at a score."""
     try:
-        found = estimate()
+        distribution = estimate()
     except NotLearnt:
         return Tested(point.number, math.nan, true.at(score), math.nan)
-    return Tested(point.number, found.slope, true.at(score), found.at(score))
+    return Tested(point.number, distribution.slope, true.at(score), distribution.at(score))
 
 
 def lengths_of(quantities: Mapping[str, float], shift: float) -> Lengths:
@@ -98,12 +98,12 @@ def lengths_of(quantities: Mapping[str, float], shift: float) -> Lengths:
     return Lengths(tuple(quantities[name] + shift for name in NAMES[:3]), quantities["slope"])
 
 
-def rest_of(found: Sequence[Tested]) -> float:
+def rest_of(surfaces: Sequence[Tested]) -> float:
     r"""Rest r of the difficulty, of greatest likelihood where errors are normal with a scatter in proportion to it.
 
     It minimises :math:`\frac 1 2 \ln \overline{(\epsilon / d)^2} + \overline{\ln d}`, with :math:`d^2 = s^2 + r^2`.
     """
-    slopes, errors = np.array([(one.slope, one.error) for one in found if one.is_known]).T
+    slopes, errors = np.array([(surface.slope, surface.error) for surface in surfaces if surface.is_known]).T
 
     def cost(logarithm):
         """Negative logarithm of the likelihood of one error, the scatter at its best."""
@@ -120,9 +120,9 @@ def conformal(errors: np.ndarray, confidence: float) -> float:
     return float(np.sort(np.abs(errors))[rank - 1]) if rank <= len(errors) else math.inf
 
 
-def scores(found: Sequence[Tested], rest: float) -> np.ndarray:
+def scores(surfaces: Sequence[Tested], rest: float) -> np.ndarray:
     """Sizes of errors over their difficulties on the surfaces that the estimate does not refuse."""
-    return np.array([one.score(rest) for one in found if one.is_known])
+    return np.array([surface.score(rest) for surface in surfaces if surface.is_known])
 
 
 def coverage(inside: int, number: int, confidence: float = 0.95) -> tuple[float, float]:
@@ -147,11 +147,11 @@ def noise_of(folder: Path, sets: str, score: float) -> np.ndarray:
 
     Of all points of some sets whose full contact settles. By the bootstrap: B. Efron, Ann. Stat. 7, 1 (1979).
     """
-    found, rng = [], stream(0, "estimate", "bootstrap")
+    errors, rng = [], stream(0, "estimate", "bootstrap")
     for _, numbers in stored(folder, sets):
         if "changed" in numbers and np.isfinite(numbers["changed"]).all():
-            found.append((_noise_of_strips(numbers, score, rng), _noise_of_tips(numbers["changed"], score, rng)))
-    return np.array(found)
+            errors.append((_noise_of_strips(numbers, score, rng), _noise_of_tips(numbers["changed"], score, rng)))
+    return np.array(errors)
 
 
 def _noise_of_tips(slopes, score, rng):

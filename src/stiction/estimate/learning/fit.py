@@ -85,17 +85,17 @@ def kernel_of(rows: DesignRows, name: str) -> Kernel:
 
     def cost(p):
         """Negative logarithm of the likelihood, the scatter at its best and the trend by least squares."""
-        own = Kernel(np.zeros(c), np.ones(c), np.exp(p[:c]), np.exp(p[c]))
+        kernel = Kernel(np.zeros(c), np.ones(c), np.exp(p[:c]), np.exp(p[c]))
         try:
-            factor = cho_factor(own.between(z, z) + own.noise**2 * np.diag(inverse), lower=True)
+            factor = cho_factor(kernel.between(z, z) + kernel.noise**2 * np.diag(inverse), lower=True)
         except np.linalg.LinAlgError:
             return 1e9
         rest = y - b @ np.linalg.lstsq(b, y, rcond=None)[0]
         return 0.5 * len(z) * np.log(rest @ cho_solve(factor, rest)) + np.log(np.diag(factor[0])).sum()
 
     start = np.append(np.full(c, 1.0), -1.0)
-    found = minimize(cost, start, method="L-BFGS-B", options={"maxiter": 25}, bounds=[(0, 3)] * c + [(-4, 1)]).x
-    return Kernel(centre, scale, np.exp(found[:c]), float(np.exp(found[c])))
+    best = minimize(cost, start, method="L-BFGS-B", options={"maxiter": 25}, bounds=[(0, 3)] * c + [(-4, 1)]).x
+    return Kernel(centre, scale, np.exp(best[:c]), float(np.exp(best[c])))
 
 
 def nodes_of(kernel: Kernel, standard: np.ndarray, number: int) -> np.ndarray:
@@ -123,8 +123,8 @@ def coefficients(kernel: Kernel, rows: DesignRows, nodes: np.ndarray) -> dict[st
     penalty[:t, :t] = _RIDGE * len(z) * np.eye(t)
     penalty[t:, t:] = kernel.noise**2 * (kernel.between(nodes, nodes) + _JITTER * np.eye(len(nodes)))
     factor = cho_factor(features.T @ features + penalty)
-    found = {name: cho_solve(factor, features.T @ (rows.weights * y)) for name, y in rows.values.items()}
-    return {name: (each[:t], each[t:]) for name, each in found.items()}
+    solutions = {name: cho_solve(factor, features.T @ (rows.weights * y)) for name, y in rows.values.items()}
+    return {name: (each[:t], each[t:]) for name, each in solutions.items()}
 
 
 @dataclass(frozen=True)
@@ -150,15 +150,15 @@ def content_of(kernel: Kernel, rows: DesignRows, columns: Sequence[int], number:
     """Content of a process over rows of some columns of the coordinates, that is trusted at every distance."""
     z = kernel.standard(rows.coordinates)
     nodes = z[nodes_of(kernel, z, number)]
-    found = coefficients(kernel, rows, nodes)
+    fitted_values = coefficients(kernel, rows, nodes)
     return {
         "columns": list(columns),
         "centre": kernel.centre,
         "scale": kernel.scale,
         "lengths": kernel.lengths,
         "nodes": nodes / kernel.lengths,
-        "trend": {key: trend for key, (trend, _) in found.items()},
-        "weights": {key: weights for key, (_, weights) in found.items()},
+        "trend": {key: trend for key, (trend, _) in fitted_values.items()},
+        "weights": {key: weights for key, (_, weights) in fitted_values.items()},
         "low": rows.coordinates.min(axis=0) - BEYOND * kernel.scale,
         "high": rows.coordinates.max(axis=0) + BEYOND * kernel.scale,
         "farthest": math.inf,
@@ -194,7 +194,7 @@ def fitted(rows: DesignRows, name: str, columns: Sequence[int], number: int = NO
     start = kernel_of(rows, name)
     kernels = [Kernel(start.centre, start.scale, start.lengths, start.noise * factor) for factor in NOISES]
     tried = [left_out(kernel, rows, columns, number) for kernel in kernels]
-    return min(tried, key=lambda one: np.std(rows.weights * one.errors[name]))
+    return min(tried, key=lambda process: np.std(rows.weights * process.errors[name]))
 
 
 def rounded(content: Any) -> Any:

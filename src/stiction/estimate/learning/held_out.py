@@ -19,6 +19,9 @@ from stiction.estimate.learning import dry_rows
 from stiction.estimate.learning.design import SurfaceLaw
 from stiction.estimate.learning.dry import CONSTANTS, DryEffort
 from stiction.estimate.learning.errors import coverage, noise_of, scores, tested, tested_bridges, tested_forces
+from stiction.estimate.learning.other_solids import rows as of_solids
+from stiction.estimate.learning.other_solids.points import RANGES, TEMPERATURES
+from stiction.estimate.learning.other_solids.points import SETS as OTHER_SOLIDS
 from stiction.estimate.length import NotLearnt
 from stiction.estimate.question import questions
 from stiction.estimate.table import Surrogate, content, known
@@ -39,11 +42,12 @@ SETS = {
 _HEAD = "| surfaces | number | refused | mean [%] | rms [%] | largest [%] | half [%] | inside 90 % | inside 95 % |"
 #: Words before both tables of drawn surfaces.
 _OF_LENGTHS = (
-    "`stiction estimate` knows cantilevers, bridges and stoppers of polysilicon, in humid air at 300 K and, without "
-    "bridges, in dry air, and refuses all else. Below are lengths for 1 in 1000 beside those of drawn surfaces that it "
-    "has not learnt, with tips changed by full contact as in a run, on strips of at most 12 µm. The error is the "
+    "`stiction estimate` knows cantilevers, bridges and stoppers in humid air and, without bridges, in dry air, and "
+    "refuses all else. Below are lengths for 1 in 1000, of polysilicon at 300 K, beside those of drawn surfaces that "
+    "it has not learnt, with tips changed by full contact as in a run, on strips of at most 12 µm. The error is the "
     "logarithm of the latter over the estimate, negative on the unsafe side. Half: median of half of the interval of "
-    "90 %. In brackets: 95 % range of the share inside."
+    "90 %. In brackets: 95 % range of the share inside. Drying, shock and pull-in are closed forms of "
+    "[the life](../life.md). Where water condenses, the estimate of a device with `shock_g` leaves the size to a run."
 )
 _OF_BRIDGES = (
     "The same for bridges, beside finite elements of their middle on force laws as of a run. Errors and halves are of "
@@ -56,6 +60,11 @@ _OF_FORCES = (
 _IN_DRY_AIR = (
     "Lengths in dry air, at Hamaker constants of {:g} to {:g} zJ, beside tips changed by {} strips in full contact at "
     "each slope, with the error that a run would reach:"
+)
+_OF_SOLIDS = (
+    "{} of other solids, with moduli of {:g} to {:g} GPa, Hamaker constants through water of {:g} to {:g} zJ and "
+    "contact angles of {:g} to {:g}° on either side, at {:g} to {:g} K. None of them decides. In the control, solids "
+    "attract each other beside the water as polysilicon does:"
 )
 _FORCES_IN_DRY_AIR = "Forces in dry air, beside patches changed by {} strips of 3 µm in full contact:"
 
@@ -73,11 +82,39 @@ def lines(folder: Path) -> Iterator[str]:
         yield from (words, "", _HEAD, "|---|---|---|---|---|---|---|---|---|")
         processes = [Surrogate(**errors[name]) for name in (first, "full")]
         for name, of_set in SETS.items():
-            learnt = table["modulus"], errors["tested_score"], lambda _, of=processes: of
-            if found := list(test(folder, name, *learnt)):
-                yield _row(of_set, found, errors)
+            learnt = table["modulus"], errors["tested_score"], lambda _, learnt_processes=processes: learnt_processes
+            if surfaces := list(test(folder, name, *learnt)):
+                yield _row(of_set, surfaces, errors)
         yield ""
+    yield from _of_other_solids(folder, table)
     yield from _of_noise(folder, table["tested_score"])
+
+
+def _of_other_solids(folder, table):
+    """Lines of the tables of other solids."""
+    ranges = [end for name in ("modulus", "hamaker", "angle") for end in RANGES[name]]
+    for words, test, errors, names in (
+        ("Lengths", of_solids.tested, table, ("tips", "full", "attraction")),
+        ("Forces", of_solids.tested_forces, table["stoppers"], ("forces", "full", "attraction")),
+    ):
+        yield from (
+            _OF_SOLIDS.format(words, *ranges, *TEMPERATURES),
+            "",
+            _HEAD,
+            "|---|---|---|---|---|---|---|---|---|",
+        )
+        learnt = [Surrogate(**errors[name]) for name in names]
+        for law, of_law in ((SurfaceLaw.TYPICAL, "like a typical surface"), (SurfaceLaw.ANY, "any surface")):
+            for of_set, processes in ((of_law, learnt), (f"{of_law}, control", learnt[:-1])):
+                sets = [name for name in OTHER_SOLIDS if name.endswith(law)]
+                numbers = (
+                    table["modulus"],
+                    errors["tested_score"],
+                    lambda _, learnt_processes=processes: learnt_processes,
+                )
+                if surfaces := [surface for name in sets for surface in test(folder, name, *numbers)]:
+                    yield _row(of_set, surfaces, errors)
+        yield ""
 
 
 def _of_noise(folder, score):
@@ -99,7 +136,11 @@ _HALF = 1.645
 
 def of_runs(lengths: str, forces: str, devices: str) -> Iterator[str]:
     """Lines of the table beside runs, whose safe lengths and forces and devices are in files. They touch down once."""
-    asked = {name: one for name, one in questions(read(devices), content()).items() if not isinstance(one, NotLearnt)}
+    asked = {
+        name: question
+        for name, question in questions(read(devices), content()).items()
+        if not isinstance(question, NotLearnt)
+    }
     yield "Beside the run of [examples/devices.yaml](../../examples/devices.yaml): lengths by beam, tip or middle, and"
     yield "of stoppers the simulated limit with 95 % confidence, which is above the estimate of the run:"
     yield ""
@@ -130,8 +171,12 @@ def _read(path):
 def _beside(row, share, of_run, question):
     """Row of one length or force of a run."""
     once = replace(question, touchdowns=1, humidities=(float(row["relative_humidity"]),))
-    found = next(one for one in answer(once, *known()).rows if np.isclose(one.fraction, share))
-    shown, low, high = (f"{from_si(number, question.unit):.3g}" for number in (found.size, *found.intervals["90"]))
+    row_of_estimate = next(
+        estimated for estimated in answer(once, *known()).rows if np.isclose(estimated.fraction, share)
+    )
+    shown, low, high = (
+        f"{from_si(number, question.unit):.3g}" for number in (row_of_estimate.size, *row_of_estimate.intervals["90"])
+    )
     cells = [
         row["device"],
         row["relative_humidity"],
@@ -142,14 +187,14 @@ def _beside(row, share, of_run, question):
     return f"| {' | '.join([*cells, f'{low} to {high}'])} |"
 
 
-def _row(words, found, of_part):
+def _row(words, surfaces, of_part):
     """Row of one set, with the errors of a part of the table."""
-    known, rest, margins = [one for one in found if one.is_known], of_part["rest"], of_part["margins"]
-    errors = np.array([one.error for one in known])
-    halves = [margins["90"] * difficulty(one.slope, rest) for one in known]
+    answered, rest, margins = [surface for surface in surfaces if surface.is_known], of_part["rest"], of_part["margins"]
+    errors = np.array([surface.error for surface in answered])
+    halves = [margins["90"] * difficulty(surface.slope, rest) for surface in answered]
     numbers = [np.mean(errors), np.sqrt(np.mean(errors**2)), np.abs(errors).max(), np.median(halves)]
-    cells = [words, len(found), len(found) - len(known), *(f"{100 * number:.1f}" for number in numbers)]
-    cells += [_inside(scores(known, rest) <= margins[name]) for name in CONFIDENCES]
+    cells = [words, len(surfaces), len(surfaces) - len(answered), *(f"{100 * number:.1f}" for number in numbers)]
+    cells += [_inside(scores(answered, rest) <= margins[name]) for name in CONFIDENCES]
     return f"| {' | '.join(map(str, cells))} |"
 
 

@@ -5,7 +5,7 @@ python -m stiction.estimate.learning.make FOLDER
 
 import json
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +26,8 @@ from stiction.estimate.learning.bridges import plan_of as plan_of_bridge
 from stiction.estimate.learning.design import FILMS, SurfaceLaw
 from stiction.estimate.learning.design import SIDES as SIDES_OF_PATCHES
 from stiction.estimate.learning.errors import Tested, conformal, rest_of, scores, tested, tested_bridges, tested_forces
-from stiction.estimate.learning.fit import Fitted, fitted, group, rounded
+from stiction.estimate.learning.fit import DesignRows, Fitted, fitted, group, rounded
+from stiction.estimate.learning.other_solids import rows as of_solids
 from stiction.estimate.learning.rows import (
     OF_FULL,
     OF_RATIO,
@@ -35,7 +36,7 @@ from stiction.estimate.learning.rows import (
     rows_of_ratios,
     rows_of_tips,
 )
-from stiction.estimate.learning.training import SETS, TrainingTips, base, full_contact_of, plan_of
+from stiction.estimate.learning.training import SETS, TrainingTips, air_of, base, full_contact_of, plan_of, water_of
 from stiction.estimate.length import normal_score
 from stiction.estimate.state import COORDINATES, OF_PATCHES
 from stiction.estimate.table import FILE, Surrogate
@@ -67,6 +68,7 @@ def table_of(folder: Path) -> dict[str, Any]:
         "coordinates": COORDINATES,
         "tips": tips.content,
         "full": full.content,
+        "attraction": attraction_of(of_solids.rows_of_tips(folder, modulus), of_solids.OF_TIPS_ATTRACTED),
         "stoppers": stoppers_of(folder, modulus),
         "bridges": bridges_of(folder, modulus),
         "dry": in_dry_air(folder, modulus),
@@ -86,36 +88,43 @@ def in_dry_air(folder: Path, modulus: float) -> dict[str, Any]:
     stoppers = {"sides": SIDES_OF_PATCHES, "coordinates": of_dry_air.OF_PATCHES}
     stoppers |= {"forces": forces.content, "full": ratios.content}
     stoppers |= errors_of(dry_rows.tested_forces, folder, modulus, forces, ratios)
-    own = {"sets": {name: vars(effort) for name, effort in dry.SETS.items()}, "tips": tips.content}
-    own |= {
+    section = {"sets": {name: vars(effort) for name, effort in dry.SETS.items()}, "tips": tips.content}
+    section |= {
         "coordinates": of_dry_air.OF_TIPS,
         "full": full.content,
         "stoppers": stoppers,
         "control": dry.control() | dry_patches.control(),
     }
-    return own | errors_of(dry_rows.tested, folder, modulus, tips, full)
+    return section | errors_of(dry_rows.tested, folder, modulus, tips, full)
+
+
+def attraction_of(rows: DesignRows, columns: Sequence[int]) -> dict[str, Any]:
+    """Process of the change of lengths or forces by the attraction of other solids."""
+    return fitted(rows, "at_2", columns, 90).content
 
 
 def stoppers_of(folder: Path, modulus: float) -> dict[str, Any]:
     """Part of the table about stoppers."""
     forces = fitted(rows_of_patches(folder, "learn", modulus), "at_2", range(len(OF_PATCHES)))
     full = fitted(rows_of_ratios(folder, "learn", modulus), "ratio", OF_RATIO, 90)
-    own = {"sides": SIDES_OF_PATCHES, "coordinates": OF_PATCHES, "forces": forces.content, "full": full.content}
-    return own | errors_of(tested_forces, folder, modulus, forces, full)
+    section = {"sides": SIDES_OF_PATCHES, "coordinates": OF_PATCHES, "forces": forces.content, "full": full.content}
+    rows = of_solids.rows_of_patches(folder, modulus)
+    section |= {"attraction": attraction_of(rows, of_solids.OF_PATCHES_ATTRACTED)}
+    return section | errors_of(tested_forces, folder, modulus, forces, full)
 
 
 def bridges_of(folder: Path, modulus: float) -> dict[str, Any]:
     """Part of the table about bridges."""
     middle = fitted(rows_of_middles(folder, "learn", modulus), "at_2", range(len(OF_BRIDGES)))
     full = fitted(rows_of_changes(folder, "learn", modulus), "shift", OF_RATIO, 90)
-    own = {
+    section = {
         "every": EVERY,
         "ranges": RANGES_OF_BRIDGES,
         "coordinates": OF_BRIDGES,
         "middle": middle.content,
         "full": full.content,
     }
-    return own | errors_of(tested_bridges, folder, modulus, middle, full)
+    return section | errors_of(tested_bridges, folder, modulus, middle, full)
 
 
 def _control_point():
@@ -133,7 +142,8 @@ def control_of_slopes() -> list[float]:
 def control_of_forces() -> list[float]:
     """Forces of one tip in full contact at three slopes, as `control_of_slopes`."""
     point, plan, height = _control_point()
-    return full_contact_of(point, plan, height, "control")["full"].ravel().tolist()
+    humidity, _ = air_of(height, 1.0, water_of(plan).temperature)
+    return full_contact_of(point, plan, humidity, SETS["control"])["full"].ravel().tolist()
 
 
 def control_of_patches() -> list[float]:
@@ -161,8 +171,8 @@ def errors_of(test: Test, folder: Path, modulus: float, first: Fitted, full: Fit
     """Numbers of the table about the errors of two processes: on summits and in full contact."""
     of_rest = rest(test, folder, modulus, first, full)
     of_margins = margins(test, folder, modulus, of_rest, *(Surrogate(**each.content) for each in (first, full)))
-    own = {"tested_score": TESTED, "left_out": first.scatter | full.scatter}
-    return own | {"rest": of_rest, "margins": of_margins}
+    section = {"tested_score": TESTED, "left_out": first.scatter | full.scatter}
+    return section | {"rest": of_rest, "margins": of_margins}
 
 
 def rest(test: Test, folder: Path, modulus: float, first: Fitted, full: Fitted) -> float:
@@ -180,11 +190,11 @@ def margins(test: Test, folder: Path, modulus: float, of_rest: float, *processes
 
     The widest of those of each law, so that an interval holds for surfaces of either.
     """
-    found = [
+    by_law = [
         scores(list(test(folder, f"decide_{law}", modulus, TESTED, lambda _: processes)), of_rest)
         for law in (SurfaceLaw.TYPICAL, SurfaceLaw.ANY)
     ]
-    return {name: round(max(conformal(errors, int(name) / 100) for errors in found), 4) for name in CONFIDENCES}
+    return {name: round(max(conformal(errors, int(name) / 100) for errors in by_law), 4) for name in CONFIDENCES}
 
 
 if __name__ == "__main__":

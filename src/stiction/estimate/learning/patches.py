@@ -7,6 +7,7 @@ As `stiction.estimate.learning.training`, whose surfaces and air they have:
 
 import math
 import sys
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -69,17 +70,26 @@ def plan_of(point: Point, sides: tuple[float, float], valid: dict[str, Any]) -> 
 
 def forces_of(point: Point, plan: Plan, heights: np.ndarray, number: int, seed: int) -> np.ndarray:
     """Pull-off pressures of a number of patches on summits, in films of some heights [m], (films, number) [Pa]."""
+    temperature = water_of(plan).temperature
+    return forces_in(point, plan, [air_of(height, 1.0, temperature)[0] for height in heights], number, seed)
+
+
+def forces_in(point: Point, plan: Plan, airs: Sequence[float], number: int, seed: int) -> np.ndarray:
+    """Pull-off pressures as of `forces_of` at some humidities [-]."""
     patch = patch_of(plan, Case(case_id(DEVICE, HUMIDITIES[0])))
     at = At(**{name: str(value) for name, value in patch._asdict().items()})
     settings = replace(in_si(Settings, GROUND.settings(plan, at, number)), seed=seed)
-    found, water = contact.compute(surfaces_of(plan), f"estimate{point.number}", "NG", settings), water_of(plan)
-    airs = [air_of(height, 1.0, water.temperature)[0] for height in heights]
-    return np.array([curves.pull_offs(found, air, water) for air in airs])
+    dataset, water = contact.compute(surfaces_of(plan), f"estimate{point.number}", "NG", settings), water_of(plan)
+    return np.array([curves.pull_offs(dataset, air, water) for air in airs])
 
 
 def change_of(point: Point, plan: Plan, height: float, seed: int) -> dict[str, float]:
+    """Change of pull-off pressures by full contact, as `change_in`, in a film of a height [m]."""
+    return change_in(point, plan, air_of(height, 1.0, water_of(plan).temperature)[0], seed)
+
+
+def change_in(point: Point, plan: Plan, humidity: float, seed: int) -> dict[str, float]:
     """Ratio of the mean pull-off in full contact to that on summits, and power of its scatter, NaN if not found."""
-    humidity, _ = air_of(height, 1.0, water_of(plan).temperature)
     stated = full_energy.settings_of(plan, At(case=Case(case_id(PAIR, round(humidity, 4)))))
     settings = replace(in_si(full_energy.Settings, stated), forces=True, seed=seed)
     settings = replace(settings, beam=replace(settings.beam, width=_WIDTH))
@@ -97,10 +107,10 @@ def computed(point: Point, name: str, valid: dict[str, Any]) -> dict[str, Any]:
     sides = sides_of(point, effort.seed, effort.law)
     plan, airs = plan_of(point, sides, valid), states(effort.states, point.number, effort.seed)
     forces = forces_of(point, plan, airs[:, 0], effort.patches, effort.seed)
-    found = {"airs": airs, "sides": np.array(sides), "forces": forces.astype(np.float32)}
+    results = {"airs": airs, "sides": np.array(sides), "forces": forces.astype(np.float32)}
     if point.number % effort.every == 0:
-        found |= change_of(point, plan, airs[0, 0], effort.seed)
-    return found
+        results |= change_of(point, plan, airs[0, 0], effort.seed)
+    return results
 
 
 if __name__ == "__main__":

@@ -142,11 +142,14 @@ OF_RATIO = (0, 1, 2, 4, 7)
 
 def rows_of_ratios(folder: Path, name: str, modulus: float) -> DesignRows:
     """Rows of the logarithm of the ratio, and of the power, of the change of pull-off forces by full contact."""
-    found = [(p, n) for p, n in stored(folder / FOLDER, name) if np.isfinite(n.get("ratio", np.nan))]
-    coordinates = np.array([patches_of(*one, modulus)[0].coordinates for one in found])
-    values = {name: np.array([float(numbers[name]) for _, numbers in found]) for name in ("ratio", "ratio_error")}
-    changes = {"ratio": np.log(values["ratio"]), "power": np.array([change_of(numbers).power for _, numbers in found])}
-    return DesignRows(coordinates, changes, np.array([point.number for point, _ in found]), values["ratio_error"])
+    settled = [(p, n) for p, n in stored(folder / FOLDER, name) if np.isfinite(n.get("ratio", np.nan))]
+    coordinates = np.array([patches_of(*point_and_numbers, modulus)[0].coordinates for point_and_numbers in settled])
+    values = {name: np.array([float(numbers[name]) for _, numbers in settled]) for name in ("ratio", "ratio_error")}
+    changes = {
+        "ratio": np.log(values["ratio"]),
+        "power": np.array([change_of(numbers).power for _, numbers in settled]),
+    }
+    return DesignRows(coordinates, changes, np.array([point.number for point, _ in settled]), values["ratio_error"])
 
 
 def change_of(numbers: Mapping[str, Any]) -> ElasticChange:

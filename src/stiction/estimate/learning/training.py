@@ -92,6 +92,14 @@ def plan_of(point: Point, base: dict[str, Any]) -> Plan:
     return Plan(base | {"surfaces": surfaces, "pairs": pairs, "devices": {DEVICE: device}})
 
 
+def with_materials(plan: Plan, *materials: dict[str, Any]) -> Plan:
+    """Plan of a point with the materials of both solids, in the units of files."""
+    named = {f"Of{side}": material for side, material in zip("ST", materials, strict=True)}
+    surfaces = {side: plan.config["surfaces"][side] | {"material": f"Of{side}"} for side in "ST"}
+    others = {name: entry for name, entry in plan.config["surfaces"].items() if name not in surfaces}
+    return Plan(plan.config | {"surfaces": others | surfaces, "materials": named})
+
+
 def base() -> dict[str, Any]:
     """Configuration of the points: all that devices have by default."""
     device = {"kind": "cantilever", "pair": PAIR, "thickness_um": _THICKNESS, "gap_um": 20, "width_um": 30}
@@ -120,8 +128,8 @@ class TrainingTips:
         case = Case(case_id(DEVICE, HUMIDITIES[0]))
         at = At(**{name: str(value) for name, value in patch_of_tips(plan, case)._asdict().items()})
         settings = replace(in_si(Settings, TIPS.settings(plan, at, tips)), seed=seed)
-        found = contact.compute(surfaces_of(plan), f"estimate{point.number}", "NG", settings)
-        return cls(found, water_of(plan), in_si(DesignedBeam, section_of_beam(plan, DEVICE)))
+        dataset = contact.compute(surfaces_of(plan), f"estimate{point.number}", "NG", settings)
+        return cls(dataset, water_of(plan), in_si(DesignedBeam, section_of_beam(plan, DEVICE)))
 
     def slopes(self, height: float, wetting: float, changes: TipChanges | None = None) -> np.ndarray:
         """Slopes up to which tips stick, by `FACTORS` (stiffnesses, tips) [-].
@@ -129,21 +137,23 @@ class TrainingTips:
         In a film of a height [m] and a mean cosine of the contact angles, on summits or changed by full contact.
         """
         humidity, angle = air_of(height, wetting, self.water.temperature)
+        return self.slopes_in(humidity, replace(self.water, contact_angles=(angle, angle)), changes)
+
+    def slopes_in(self, humidity: float, water: Water, changes: TipChanges | None = None) -> np.ndarray:
+        """Slopes as of `slopes` at a humidity [-] with water."""
         change = None if changes is None else Correction(np.array([humidity]), NONE, NONE, changes)
-        water = replace(self.water, contact_angles=(angle, angle), correction=change)
-        at, forces = curves.tip_forces(self.contact, humidity, water)
+        at, forces = curves.tip_forces(self.contact, humidity, replace(water, correction=change))
         beams = [replace(self.device, gap=self.device.gap / factor**0.5).beam for factor in FACTORS]
         return np.array([tip_slope(longest_free(at, forces, beam), beam.gap) for beam in beams])
 
 
-def full_contact_of(point: Point, plan: Plan, height: float, name: str) -> dict[str, np.ndarray]:
-    """Largest attractions of few tips in full contact and of more on summits, at three slopes, wetting perfectly."""
-    effort, (humidity, _) = SETS[name], air_of(height, 1.0, water_of(plan).temperature)
+def full_contact_of(point: Point, plan: Plan, humidity: float, effort: TrainingEffort) -> dict[str, np.ndarray]:
+    """Largest attractions of few tips in full contact and of more on summits, at three slopes."""
     stated = tips_in_full_contact.settings_of_devices(plan, At(case=Case(case_id(PAIR, round(humidity, 4)))))
     settings = in_si(tips_in_full_contact.Settings, stated)
-    own = replace(settings, strips=effort.strips[0], on_summits=effort.strips[1], seed=effort.seed)
-    own = replace(own, beam=replace(own.beam, width=min(own.beam.width, _NARROW)))
-    study = tips_in_full_contact.compute_for_devices(surfaces_of(plan), f"estimate{point.number}", own)
+    narrow = replace(settings, strips=effort.strips[0], on_summits=effort.strips[1], seed=effort.seed)
+    narrow = replace(narrow, beam=replace(narrow.beam, width=min(narrow.beam.width, _NARROW)))
+    study = tips_in_full_contact.compute_for_devices(surfaces_of(plan), f"estimate{point.number}", narrow)
     full, summits = tips_in_full_contact.models_of_devices(study)
     return {"slope": study.slope.values, "full": full[:, 0], "summits": summits[:, 0]}
 
@@ -176,12 +186,13 @@ def computed(point: Point, name: str, valid: dict[str, Any]) -> dict[str, Any]:
     airs = states(effort.states, point.number, effort.seed)
     number = effort.tips + round(effort.tips_by_width / to_si(point.width, "um"))
     tips = TrainingTips.of(point, plan, number, effort.seed)
-    found = {"airs": airs, "slopes": np.array([tips.slopes(*air) for air in airs], np.float32)}
+    results = {"airs": airs, "slopes": np.array([tips.slopes(*air) for air in airs], np.float32)}
     if point.number % effort.every == 0:
-        of_full = full_contact_of(point, plan, airs[0, 0], name)
+        humidity, _ = air_of(airs[0, 0], 1.0, water_of(plan).temperature)
+        of_full = full_contact_of(point, plan, humidity, effort)
         changed = tips.slopes(*airs[0], changes_of(**of_full))[FACTORS.index(1.0)]
-        found |= of_full | {"changed": changed.astype(np.float32)}
-    return found
+        results |= of_full | {"changed": changed.astype(np.float32)}
+    return results
 
 
 #: Numbers of one point of a set, from a valid configuration.

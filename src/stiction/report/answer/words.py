@@ -6,8 +6,8 @@ import numpy as np
 
 from stiction.answer.data import INPUTS, Answer, Cause, Probability, Verdict
 from stiction.answer.sought import FORCE, LENGTH, PULL_OFF
+from stiction.constants import ZERO_CELSIUS
 from stiction.contact.air import Air
-from stiction.contact.meniscus import ZERO_CELSIUS
 from stiction.devices.risk import one_in
 from stiction.report.format import airs, humidity_text, listed, number, percent_bound, safe_size
 from stiction.rounding import grouped, in_percent

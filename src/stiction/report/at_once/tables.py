@@ -81,7 +81,13 @@ SIZES = {
 _TITLE = "The estimate at once beside the run"
 _MISSING = "the estimate refuses this air, or too few of the simulated devices stick for a size"
 #: Units of the inputs of the estimate, for those that have one.
-_SIZES = dict.fromkeys(("thickness", "gap", "width"), "um") | {"hamaker_constant": "zJ", "residual_stress": "MPa"}
+_SIZES = dict.fromkeys(("thickness", "gap", "width"), "um") | {
+    "residual_stress": "MPa",
+    "wetting": "",
+    "temperature": "K",
+}
+_SIZES |= dict.fromkeys(("hamaker_constant", "hamaker_constant_in_water"), "zJ")
+_SIZES |= dict.fromkeys(("modulus", "beam_modulus"), "GPa")
 _OF_SIDES = {"rms": "nm", "skewness": "", "kurtosis": "", "plateau": "nm4", "floor": "nm4"}
 _OF_SIDES |= dict.fromkeys(("corner", "cutoff"), "rad_per_um")
 #: Words by whether the size of the run is inside the interval of the estimate.
@@ -127,7 +133,8 @@ def _inputs(dataset):
     """Inputs of the estimate in the units of a configuration, none where it refuses the configuration."""
     if "side" not in dataset.dims:
         return {}
-    numbers = {f"{name}_{unit}": (dataset[name], unit) for name, unit in _SIZES.items() if name in dataset}
+    stated = ((name, unit) for name, unit in _SIZES.items() if name in dataset)
+    numbers = {f"{name}_{unit}".rstrip("_"): (dataset[name], unit) for name, unit in stated}
     for direction in dataset.direction.values if "contact" in dataset else ():
         numbers[f"contact_{direction}_um"] = dataset.contact.sel(direction=direction), "um"
     for side in dataset.side.values:

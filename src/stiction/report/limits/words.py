@@ -11,9 +11,9 @@ import numpy as np
 from stiction.beam.foundation import ACCURACY, LONGER, TOO_EARLY
 from stiction.constants import WATER_MOLECULE
 from stiction.contact.air import DRY_AIR, has_dry, humid
+from stiction.contact.air import MOLECULES as LIQUID
 from stiction.contact.full.smooth_pairs import largest_shortfall
 from stiction.contact.materials import COATING_ATTRACTION
-from stiction.contact.meniscus import MOLECULES as LIQUID
 from stiction.devices.limits.limit import Limit, Side
 from stiction.devices.limits.rules import FILMS, MOLECULES, OF_SLOPE, PLASTIC, PLATE, RIM, ROTATION, SLENDER, STEEPEST
 from stiction.report.format import TO_MPA, TO_NM, TO_UM, airs, bounding, listed, with_error

@@ -5,20 +5,21 @@ have all inputs of the estimate, so that runs test it, and can teach it.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from stiction.config.units import from_si
+from stiction.constants import REFERENCE_TEMPERATURE
 from stiction.estimate.answer import CONFIDENCES, in_one_air
 from stiction.estimate.bridge import Bridge
 from stiction.estimate.complete import question_of
-from stiction.estimate.dry import POLYSILICON
 from stiction.estimate.force import Stopper
 from stiction.estimate.length import NotLearnt
 from stiction.estimate.question import Question
+from stiction.estimate.solids import SolidPair
 from stiction.estimate.statistics import Heights, moments_of
 from stiction.estimate.table import FILE, known
 from stiction.models import SIDES
@@ -52,8 +53,33 @@ class AskedSurface:
         return numbers.pop("published_psd") | numbers
 
 
+@dataclass(frozen=True, kw_only=True)
+class AskedSolids:
+    """SolidPair and water of a device, those that differ from polysilicon at 300 K."""
+
+    hamaker_constant: float = SolidPair.in_dry_air  #: of the solids in dry air [J]
+    hamaker_constant_in_water: float = SolidPair.through_water  #: of the solids [J]
+    modulus: float = SolidPair.modulus  #: as of `stiction.estimate.solids.SolidPair` [Pa]
+    beam_modulus: float = SolidPair.beam_modulus  #: [Pa]
+    wetting: float = SolidPair.wetting  #: sum of the cosines of both contact angles [-]
+    temperature: float = REFERENCE_TEMPERATURE  #: [K]
+
+    @property
+    def solids(self) -> dict[str, Any]:
+        """SolidPair and temperature of a question by name."""
+        attraction = {"through_water": self.hamaker_constant_in_water, "in_dry_air": self.hamaker_constant}
+        solids = SolidPair(self.modulus, self.beam_modulus, **attraction, wetting=self.wetting)
+        return {"solids": solids, "temperature": self.temperature}
+
+    @property
+    def of_solids(self) -> dict[str, Any]:
+        """Variables of the numbers that differ from those of polysilicon at 300 K."""
+        numbers = ((each.name, getattr(self, each.name), each.default) for each in fields(AskedSolids))
+        return {name: ((), value) for name, value, default in numbers if value != default}
+
+
 @dataclass(frozen=True)
-class AskedBeam:
+class AskedBeam(AskedSolids):
     """Cantilever or bridge on two surfaces, as the estimate knows it."""
 
     beam: AskedSurface
@@ -62,7 +88,6 @@ class AskedBeam:
     gap: float  #: [m]
     width: float  #: [m]
     residual_stress: float | None = None  #: of a bridge [Pa]
-    hamaker_constant: float = POLYSILICON  #: of the solids in dry air [J]
 
     @property
     def sides(self) -> list[AskedSurface]:
@@ -73,15 +98,15 @@ class AskedBeam:
     def sizes(self) -> dict[str, Any]:
         """Variables of its own numbers."""
         stated = {name: getattr(self, name) for name in ("thickness", "gap", "width", "residual_stress")}
-        return {name: ((), value) for name, value in stated.items() if value is not None} | _constant(self)
+        return {name: ((), value) for name, value in stated.items() if value is not None} | self.of_solids
 
     def question(self, air: float) -> Question | Bridge:
         """Question about one air [-]."""
         surfaces = tuple(side.heights for side in self.sides)
         stated = "", surfaces, ({}, {}), (air,), self.thickness, self.gap, self.width
         if self.residual_stress is None:
-            return Question(*stated, constant=self.hamaker_constant)
-        return Bridge(*stated, self.residual_stress)
+            return Question(*stated, **self.solids)
+        return Bridge(*stated, self.residual_stress, **self.solids)
 
 
 @dataclass(frozen=True)
@@ -93,13 +118,12 @@ class Settings:
 
 
 @dataclass(frozen=True)
-class AskedStopper:
+class AskedStopper(AskedSolids):
     """Stopper on two surfaces, as the estimate knows it."""
 
     beam: AskedSurface
     substrate: AskedSurface
     contact: tuple[float, float]  #: sides of its area [m]
-    hamaker_constant: float = POLYSILICON  #: of the solids in dry air [J]
 
     @property
     def sides(self) -> list[AskedSurface]:
@@ -109,18 +133,12 @@ class AskedStopper:
     @property
     def sizes(self) -> dict[str, Any]:
         """Variables of its own numbers."""
-        return {"contact": ("direction", list(self.contact)), "direction": ["x", "y"]} | _constant(self)
+        return {"contact": ("direction", list(self.contact)), "direction": ["x", "y"]} | self.of_solids
 
     def question(self, air: float) -> Stopper:
         """Question about one air [-]."""
         surfaces = tuple(side.heights for side in self.sides)
-        return Stopper("", surfaces, ({}, {}), (air,), self.contact, constant=self.hamaker_constant)
-
-
-def _constant(asked):
-    """Variable of a Hamaker constant that differs from that of polysilicon."""
-    constant = asked.hamaker_constant
-    return {} if constant == POLYSILICON else {"hamaker_constant": ((), constant)}
+        return Stopper("", surfaces, ({}, {}), (air,), self.contact, **self.solids)
 
 
 @dataclass(frozen=True)
@@ -221,11 +239,30 @@ def _settings(kind_of_numbers):
             return {"refused": str(question)}
         pair, surfaces = plan.config["pairs"][section["pair"]], plan.config["surfaces"]
         sides = {side: surfaces[pair[side]] for side in SIDES}
-        has_material = any("material" in side for side in sides.values())
-        constant = {"hamaker_constant_zJ": round(from_si(question.constant, "zJ"), 9)} if has_material else {}
-        return {"asked": select(kind_of_numbers, section | sides | constant)}
+        of_solids = _of_solids(question, any("material" in side for side in sides.values()))
+        return {"asked": select(kind_of_numbers, section | sides | of_solids)}
 
     return settings
+
+
+def _of_solids(question, has_material):
+    """Keys of solids and water that differ from polysilicon at 300 K. All materials have the constant in dry air."""
+    solids, polysilicon = question.solids, AskedSolids()
+    moduli = {"modulus": (solids.modulus, "GPa"), "beam_modulus": (solids.beam_modulus, "GPa")}
+    of_water = {
+        "hamaker_constant_in_water": (solids.through_water, "zJ"),
+        "wetting": (solids.wetting, ""),
+        "temperature": (question.temperature, "K"),
+    }
+    numbers = moduli if all(map(question.is_dry, question.humidities)) else moduli | of_water
+    own = {name: number for name, number in numbers.items() if number[0] != getattr(polysilicon, name)}
+    own |= {"hamaker_constant": (solids.in_dry_air, "zJ")} if has_material else {}
+    return dict(_in_files(name, *number) for name, number in own.items())
+
+
+def _in_files(name, value, unit):
+    """Key of a number in files, and its value there."""
+    return (f"{name}_{unit}", round(from_si(value, unit), 9)) if unit else (name, round(value, 12))
 
 
 def _stage(name, kind_of_numbers, kind, result, compute):

@@ -1,0 +1,48 @@
+"""What all questions to the estimate have in common. Plain Python, SI units."""
+
+from dataclasses import dataclass, field
+from typing import ClassVar
+
+from stiction.constants import REFERENCE_TEMPERATURE
+from stiction.contact.air import is_humid
+from stiction.estimate.closed.life import Surroundings
+from stiction.estimate.length import most_after
+from stiction.estimate.solids import SolidPair
+from stiction.estimate.statistics import Heights
+
+
+@dataclass(frozen=True)
+class Asked:
+    """Question about a device on two surfaces. A kind has its sizes, and says how they stick."""
+
+    name: str
+    surfaces: tuple[Heights, Heights]  #: as stated
+    members: tuple[dict[str, Heights], dict[str, Heights]]  #: typical surfaces in place of each that is partly assumed
+    humidities: tuple[float, ...]  #: [-]
+    touchdowns: int = field(default=1, kw_only=True)
+    left_out: tuple[str, ...] = field(default=(), kw_only=True)  #: keys that a run would read as well
+    #: Whether the length is the mean over typical surfaces, not that on the stated one.
+    averaged: bool = field(default=False, kw_only=True)
+    solids: SolidPair = field(default=SolidPair(), kw_only=True)
+    surroundings: Surroundings = field(default=Surroundings(), kw_only=True)
+    temperature: float = field(default=REFERENCE_TEMPERATURE, kw_only=True)  #: of the water [K]
+    unit: ClassVar[str] = "um"  #: of its size, a length
+
+    @property
+    def size(self) -> float | None:
+        """Size to which it is built [SI], none if it is not stated."""
+        raise NotImplementedError
+
+    @property
+    def stated(self) -> float | None:
+        """Its size as a length."""
+        return self.size
+
+    @property
+    def most(self) -> float:
+        """Largest fraction that is known after all touchdowns [-]."""
+        return most_after(self.touchdowns)
+
+    def is_dry(self, air: float) -> bool:
+        """Whether no water condenses between its surfaces at a humidity [-]."""
+        return not (is_humid(air) and self.solids.is_wetted)

@@ -1,0 +1,65 @@
+"""Contacts of the design with solids that attract each other more or less than polysilicon, beside its water.
+
+Tips and patches on summits, on the strips of some points of `stiction.estimate.learning.training` and
+`stiction.estimate.learning.patches`, so that what changes is the attraction alone:
+
+    python -m stiction.estimate.learning.other_solids.attraction FOLDER [SET [FIRST LAST]]
+"""
+
+import math
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from stiction.config.units import from_si, to_si
+from stiction.constants import HAMAKER_CONSTANT
+from stiction.estimate.learning import patches, training
+from stiction.estimate.learning.design import Point, states
+from stiction.estimate.learning.training import TrainingTips, main, with_materials
+from stiction.plan.plan import Plan
+from stiction.streams import stream
+
+#: Folder of the points beside those of polysilicon.
+FOLDER = "attraction"
+#: Least and largest Hamaker constant over polysilicon's, even in its logarithm: from silica through water to gold on
+#: sides of which water has a contact angle of 70°.
+RATIOS = (0.04, 8.0)
+#: Airs of a point, the first of those of polysilicon.
+AIRS = 3
+#: Sets to learn from: the first points of those of polysilicon.
+SETS = {
+    name: replace(training.SETS[name], points=points, states=AIRS)
+    for name, points in (("learn_any", 40), ("learn_typical", 48))
+}
+
+
+def ratio_of(point: Point, seed: int) -> float:
+    """Hamaker constants of a point over polysilicon's [-]."""
+    low, high = map(math.log, RATIOS)
+    return round(math.exp(stream(seed, "estimate", "attraction", point.number).uniform(low, high)), 4)
+
+
+def scaled(plan: Plan, ratio: float) -> Plan:
+    """Plan of a point whose solids attract each other as polysilicon by a ratio."""
+    material = {"hamaker_constant_zJ": {name: ratio * from_si(each, "zJ") for name, each in HAMAKER_CONSTANT.items()}}
+    return with_materials(plan, material, material)
+
+
+def computed(point: Point, name: str, valid: dict[str, Any]) -> dict[str, Any]:
+    """Numbers of one point of a set."""
+    effort, of_polysilicon = SETS[name], training.SETS[name]
+    ratio, airs = ratio_of(point, effort.seed), states(of_polysilicon.states, point.number, effort.seed)[:AIRS]
+    number = effort.tips + round(effort.tips_by_width / to_si(point.width, "um"))
+    tips = TrainingTips.of(point, scaled(training.plan_of(point, valid), ratio), number, effort.seed)
+    sides = patches.sides_of(point, effort.seed, effort.law)
+    plan = scaled(patches.plan_of(point, sides, patches.base()), ratio)
+    forces = patches.forces_of(point, plan, airs[:, 0], effort.patches, effort.seed)
+    slopes = np.array([tips.slopes(*air) for air in airs], np.float32)
+    return {"ratio": np.array(ratio), "slopes": slopes, "forces": forces.astype(np.float32)}
+
+
+if __name__ == "__main__":
+    main(training.base(), computed, Path(sys.argv[1]) / FOLDER, SETS, *sys.argv[2:])

@@ -1,0 +1,90 @@
+r"""SolidPair of a pair and how water wets them, as the estimate knows them. Plain Python, SI units.
+
+Contact depends on both moduli by E' alone, so that two bodies with the Poisson ratio ν of polysilicon and the modulus
+
+.. math:: E = 2 (1 - \nu^2) E' , \quad \frac{1}{E'} = \frac{1 - \nu_1^2}{E_1} + \frac{1 - \nu_2^2}{E_2}
+
+stand for both. Contact angles and temperature are in height and energy Γ of the film. What remains of other solids in
+humid air is their attraction through water beside that of the water,
+
+.. math:: r = \frac{\mathfrak{H}}{\mathfrak{H}_0} \frac{\Gamma_0}{\Gamma} ,
+
+1 for polysilicon that water wets perfectly at 300 K. Its change of lengths and forces is learnt.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from stiction.config.units import to_si
+from stiction.constants import HAMAKER_CONSTANT, POISSON_RATIO, WATER_SURFACE_ENERGY, YOUNG_MODULUS
+from stiction.contact.air import DRY, ROUNDING
+
+#: Medium between solids in humid air.
+_WATER = "water"
+
+
+@dataclass(frozen=True)
+class SolidPair:
+    """SolidPair of both sides. Polysilicon that water wets perfectly, unless stated otherwise."""
+
+    modulus: float = YOUNG_MODULUS  #: E of two bodies like polysilicon that are as stiff in contact [Pa]
+    beam_modulus: float = YOUNG_MODULUS  #: [Pa]
+    through_water: float = HAMAKER_CONSTANT[_WATER]  #: Hamaker constant of both [J]
+    in_dry_air: float = HAMAKER_CONSTANT[DRY]  #: the same through dry air [J]
+    wetting: float = 2.0  #: cos θ₁ + cos θ₂
+
+    @classmethod
+    def of(cls, beam: Mapping[str, Any], substrate: Mapping[str, Any]) -> "SolidPair":
+        """SolidPair of the materials of both sides, in the units of files. Other keys change nothing.
+
+        Examples
+        --------
+        >>> oxide = {"young_modulus_GPa": 73.1, "poisson_ratio": 0.17, "contact_angle_deg": 60}
+        >>> pair = SolidPair.of(oxide, {})
+        >>> round(pair.modulus / 1e9, 1), pair.beam_modulus / 1e9, round(pair.wetting, 3)
+        (99.8, 73.1, 1.5)
+        """
+        both, polysilicon = (beam, substrate), cls()
+        first, second = map(_stiffness, both)
+        of_polysilicon = dict.fromkeys(HAMAKER_CONSTANT, 1.0)
+        relative = [_relative_constants(side) if "hamaker_constant_zJ" in side else of_polysilicon for side in both]
+        water, dry = (math.prod(side[medium] for side in relative) ** 0.5 for medium in (_WATER, DRY))
+        angles = (to_si(side.get("contact_angle_deg", 0), "deg") for side in both)
+        return cls(
+            modulus=first * (2 * second / (first + second)),
+            beam_modulus=_modulus(beam),
+            through_water=polysilicon.through_water * water,
+            in_dry_air=polysilicon.in_dry_air * dry,
+            wetting=sum(map(math.cos, angles)),
+        )
+
+    @property
+    def is_wetted(self) -> bool:
+        """Whether water condenses between them, as `stiction.contact.meniscus.is_wetted`."""
+        return self.wetting > ROUNDING
+
+    def attraction(self, energy: float) -> float:
+        """Attraction r through water beside that of a film of an energy [J m⁻²], over polysilicon's [-]."""
+        polysilicon = SolidPair()
+        flooded = polysilicon.wetting * WATER_SURFACE_ENERGY
+        return self.through_water / polysilicon.through_water * (flooded / energy)
+
+
+def _modulus(material):
+    """Young's modulus of a material [Pa]."""
+    return to_si(material["young_modulus_GPa"], "GPa") if "young_modulus_GPa" in material else YOUNG_MODULUS
+
+
+def _stiffness(material):
+    """Modulus of a body like polysilicon that is as stiff in contact [Pa]."""
+    return _modulus(material) * ((1 - POISSON_RATIO**2) / (1 - material.get("poisson_ratio", POISSON_RATIO) ** 2))
+
+
+def _relative_constants(material):
+    """Hamaker constants of two bodies of a material over those of polysilicon, by medium."""
+    return {
+        medium: to_si(value, "zJ") / HAMAKER_CONSTANT[medium]
+        for medium, value in material["hamaker_constant_zJ"].items()
+    }

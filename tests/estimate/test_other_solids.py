@@ -1,0 +1,395 @@
+"""Other solids, contact angles and temperatures in the estimate: similarity, what a run states, learning, refusals."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import stiction
+from stiction.config.messages import ConfigError
+from stiction.config.reading import paper
+from stiction.config.relations import schema
+from stiction.constants import HAMAKER_CONSTANT
+from stiction.contact.materials import Solid
+from stiction.contact.solids import composite_modulus, hamaker_constant
+from stiction.estimate import question as asking
+from stiction.estimate.answer import answer
+from stiction.estimate.bridge import MiddleState
+from stiction.estimate.force import reciprocals
+from stiction.estimate.learning import patches, training
+from stiction.estimate.learning.other_solids import attraction, points, rows
+from stiction.estimate.learning.rows import states_of
+from stiction.estimate.length import Impossible, NotLearnt, lengths, of_solids
+from stiction.estimate.question import ENDS, OF_ATTRACTION, questions
+from stiction.estimate.solids import SolidPair
+from stiction.estimate.state import COORDINATES, OF_PATCHES, Film, PatchState, TipState, film
+from stiction.estimate.statistics import of_pair
+from stiction.estimate.table import Surrogate, content, known
+from stiction.progress import without_progress
+
+LEVER = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30, "humidities": [0.7]}
+BUMP = {"kind": "stopper", "pair": "b", "contact_um": [3, 3], "humidities": [0.7], "restoring_force_uN": 60}
+ARCH = {"kind": "bridge", "pair": "b", "thickness_um": 2, "gap_um": 2, "width_um": 30, "residual_stress_MPa": 50}
+ARCH |= {"humidities": [0.7]}
+(POINT,) = training.SETS["control"].all
+HEIGHTS = of_pair(POINT.sides)
+WATER = film(0.7, 300.0, 2.0)
+TIP = TipState(HEIGHTS, WATER, 7000.0, 20e-6, 164e9)
+PATCH = PatchState(HEIGHTS, WATER, 9e-12, 164e9)
+
+
+def process_of(**quantities):
+    """Process of quantities that are the same everywhere."""
+    trend = {key: [value] for key, value in quantities.items()}
+    return Surrogate([], [], [], [], [[]], trend, {key: [0.0] for key in quantities}, [], [], math.inf)
+
+
+def falling(first):
+    """Process of quantities that fall by a tenth between scores."""
+    return process_of(at_0=first, at_1=first - 0.1, at_2=first - 0.2, slope=0.1)
+
+
+def found(device, sections=None, **keys):
+    """Answer about a device in a file with other sections."""
+    return answer(questions({"devices": {"D": device | keys}} | (sections or {}), content())["D"], *known())
+
+
+def of_material(**material):
+    """Sections of a file in which both sides of pair b are of a material."""
+    sides = {"B2": {"material": "Mine"}, "Sub1": {"material": "Mine"}}
+    return {"surfaces": sides, "materials": {"Mine": material}}
+
+
+bodies = st.builds(
+    Solid,
+    young_modulus=st.floats(5e9, 5e11),
+    poisson_ratio=st.floats(0.0, 0.45),
+    hamaker_constant=st.fixed_dictionaries({"water": st.floats(1e-21, 3e-19), "dry": st.floats(4e-20, 5e-19)}),
+    contact_angle=st.floats(0, 1.5),
+)
+
+
+def in_file(body):
+    """Section of the material of a body."""
+    constants = {medium: 1e21 * value for medium, value in body.hamaker_constant.items()}
+    numbers = {"young_modulus_GPa": 1e-9 * body.young_modulus, "poisson_ratio": body.poisson_ratio}
+    return numbers | {"hamaker_constant_zJ": constants, "contact_angle_deg": math.degrees(body.contact_angle)}
+
+
+@given(bodies, bodies)
+def test_two_bodies_are_combined_as_in_a_run(first, second):
+    pair, polysilicon = SolidPair.of(in_file(first), in_file(second)), Solid()
+    equal = replace(polysilicon, young_modulus=pair.modulus)
+    assert composite_modulus(equal, equal) == pytest.approx(composite_modulus(first, second))
+    assert pair.beam_modulus == pytest.approx(first.young_modulus)
+    assert pair.through_water == pytest.approx(hamaker_constant(first, second, "water"))
+    assert pair.in_dry_air == pytest.approx(hamaker_constant(first, second, "dry"))
+    assert pair.wetting == pytest.approx(math.cos(first.contact_angle) + math.cos(second.contact_angle))
+
+
+def test_what_is_not_stated_is_exactly_polysilicon_that_water_wets():
+    assert SolidPair.of({}, {}) == SolidPair()
+    assert SolidPair().attraction(film(0.7, 300.0, 2.0).energy) == 1.0
+    assert Solid().young_modulus == SolidPair().modulus == content()["modulus"]
+    assert paper()["solid"]["poisson_ratio"] == Solid().poisson_ratio
+    assert dict(Solid().hamaker_constant) == {"water": SolidPair().through_water, "dry": SolidPair().in_dry_air}
+
+
+@pytest.mark.parametrize("factor", [0.5, 3.0])
+def test_a_state_of_the_same_numbers_is_the_same(factor):
+    """Water, solids and beam that are all stronger by a factor: no coordinate changes, and no attraction beside."""
+    stronger = Film(WATER.height, factor * WATER.energy)
+    tip = replace(TIP, film=stronger, stiffness=factor * TIP.stiffness, modulus=factor * TIP.modulus)
+    np.testing.assert_allclose(tip.coordinates, TIP.coordinates, rtol=1e-12)
+    solids = SolidPair(through_water=factor * SolidPair().through_water)
+    assert solids.attraction(stronger.energy) == pytest.approx(1.0)
+    assert SolidPair().attraction(stronger.energy) == pytest.approx(1 / factor), "the control: water alone"
+
+
+def pressures_of(modulus=164, ratio=1.0, humidity=0.6, temperature=300.0, angle=0.0):
+    """Pull-off pressures of patches of the control point."""
+    plan = patches.plan_of(POINT, (1.0, 1.0), patches.base())
+    material = {"young_modulus_GPa": modulus, "contact_angle_deg": angle}
+    material |= {"hamaker_constant_zJ": {name: 1e21 * ratio * value for name, value in HAMAKER_CONSTANT.items()}}
+    with without_progress():
+        return patches.forces_in(POINT, points.with_solids(plan, temperature, [material] * 2), [humidity], 3, 1)[0]
+
+
+def test_contacts_of_a_run_have_the_similarity():
+    """Of a film of the same height with half the energy, solids half as stiff that attract half as much hold half."""
+    own, height = pressures_of(), film(0.6, 300.0, 2.0).height
+    materials = [{"contact_angle_deg": 60.0}] * 2
+    drier = points.humidity_of(300.0, materials, height)
+    assert film(drier, 300.0, 1.0).height == pytest.approx(height, rel=1e-3)
+    half, alone = pressures_of(82, 0.5, drier, angle=60.0), pressures_of(82, 1.0, drier, angle=60.0)
+    np.testing.assert_allclose(half, own / 2, rtol=2e-3)
+    assert np.all(alone > 1.02 * own / 2), "the control: solids that attract as before"
+
+
+def test_stronger_attraction_shortens_by_what_was_learnt_for_each_logarithm():
+    change = process_of(at_0=-0.1, at_1=-0.2, at_2=-0.3)
+    own = lengths(TIP, 1.0, falling(0.9), None, change)
+    strong = lengths(replace(TIP, attraction=math.e), 1.0, falling(0.9), None, change)
+    for score, by in ((0.0, 0.1), (-1.0, 0.2), (-2.0, 0.3)):
+        assert strong.at(score) == pytest.approx(own.at(score) * math.exp(-by))
+    weak = lengths(replace(TIP, attraction=math.exp(-0.5)), 1.0, falling(0.9), None, change)
+    assert weak.at(-1.0) == pytest.approx(own.at(-1.0) * math.exp(0.1))
+    forces = falling(1.5), process_of(ratio=0.0, power=1.0), change
+    more = reciprocals(replace(PATCH, attraction=math.e), *forces)
+    assert more.at(0.0) == pytest.approx(reciprocals(PATCH, *forces).at(0.0) * math.exp(-0.1))
+
+
+def test_lengths_of_bridges_change_by_a_quarter_of_the_change_of_forces():
+    from stiction.estimate import bridge
+
+    state = MiddleState(HEIGHTS, WATER, 2e-6, 2e-6, 30e-6, 50e6, 164e9, 164e9)
+    learnt = falling(0.5), process_of(shift=0.0, power=1.0), process_of(at_0=-0.4, at_1=-0.4, at_2=-0.4)
+    own, strong = (bridge.lengths(each, *learnt) for each in (state, replace(state, attraction=math.e)))
+    assert strong.at(-2.0) == pytest.approx(own.at(-2.0) * math.exp(-0.1))
+    stiff = replace(state, modulus_in_contact=2 * 164e9).coordinates
+    assert stiff[1] == pytest.approx(state.coordinates[1] - math.log(2))
+    np.testing.assert_allclose(np.delete(stiff, 1), np.delete(state.coordinates, 1))
+
+
+def test_attraction_beyond_what_was_learnt_is_refused_by_its_name():
+    process = Surrogate([10], [0.0], [1.0], [1.0], [[0.0]], {"at_0": [0.0, 0.0]}, {"at_0": [0.0]}, [-1.0], [1.0], 9.0)
+    values = {"at_0": 0.0, "at_1": 0.0, "at_2": 0.0}
+    with pytest.raises(NotLearnt, match="attraction of the solids beside that of the water .* is too large"):
+        of_solids(values, replace(TIP, attraction=9.0), process)
+    assert of_solids(values, TIP, process) is values
+
+
+@pytest.mark.parametrize("device", [LEVER, BUMP, ARCH])
+def test_softer_solids_stick_more_and_less_wetting_ones_less(device):
+    def holds(**material):
+        """What holds it, in proportion to its tendency to stick."""
+        size = found(device, of_material(**material)).chosen.size
+        return size if device is BUMP else 1 / size
+
+    own = holds()
+    assert holds(young_modulus_GPa=120) > own
+    assert holds(contact_angle_deg=50) < own
+    assert holds(hamaker_constant_zJ={"water": 200, "dry": 400}) > own
+    assert found(device).chosen.size == pytest.approx(1 / own if device is not BUMP else own, rel=1e-12)
+
+
+def test_a_material_of_the_beam_alone_bends_it_and_that_of_the_whole_solid_both():
+    hard = {"young_modulus_GPa": 300}
+    one = {"surfaces": {"B2": {"material": "Mine"}}, "materials": {"Mine": hard}}
+    beam = questions({"devices": {"D": LEVER}} | one, content())["D"].solids
+    whole = questions({"devices": {"D": LEVER}, "solid": hard}, content())["D"].solids
+    assert (beam.beam_modulus, whole.beam_modulus, whole.modulus) == pytest.approx((300e9, 300e9, 300e9))
+    assert beam.modulus == pytest.approx(2 / (1 / 300e9 + 1 / 164e9))
+
+
+def test_a_material_by_name_has_the_numbers_of_a_run():
+    silica = questions({"devices": {"D": LEVER}, "surfaces": {"B2": {"material": "SiO2"}}}, content())["D"].solids
+    assert silica.beam_modulus == pytest.approx(73.1e9)
+    assert silica.through_water == pytest.approx(math.sqrt(4.6e-21 * HAMAKER_CONSTANT["water"]))
+    like = {"surfaces": {"B2": {"material": "Mine"}}, "materials": {"Mine": {"like": "SiO2", "contact_angle_deg": 60}}}
+    mine = questions({"devices": {"D": LEVER}} | like, content())["D"].solids
+    assert (mine.beam_modulus, mine.wetting) == pytest.approx((silica.beam_modulus, 1.5))
+
+
+def test_what_water_does_not_wet_sticks_as_in_dry_air():
+    both = of_material(contact_angle_deg=100)
+    assert found(LEVER, both).rows == found(LEVER, both, humidities=["dry"]).rows
+    assert found(LEVER, of_material(contact_angle_deg=60)).rows != found(LEVER, both).rows, "the control"
+
+
+def test_warmer_water_has_its_own_film():
+    warm = found(LEVER, {"water": {"temperature_K": 350}})
+    assert warm.chosen.size > found(LEVER).chosen.size
+    assert found(LEVER, {"water": {"temperature_K": 300}}).rows == found(LEVER).rows
+
+
+def test_a_file_changes_single_keys_of_a_typical_surface():
+    rougher = found(LEVER, {"surfaces": {"B2": {"rms_nm": 5}}})
+    assert rougher.chosen.size > found(LEVER).chosen.size
+
+
+# What a run refuses
+
+
+def refused(values, key, value):
+    """Sentence with which a run refuses a value at a path, None if it does not."""
+    sections = {"surfaces": {"Mine": {"like": "B2", "rms_nm": 3}}, "materials": {"Soft": {}}, "solid": {}, "water": {}}
+    place = sections
+    for name in values:
+        place = place.setdefault(name, {})
+    place[key] = value
+    try:
+        stiction.load({"run": {"pairs": [], "studies": []}, **{k: v for k, v in sections.items() if v}})
+    except ConfigError as error:
+        return next((line for line in error.problems if line.startswith(".".join([*values, key]))), None)
+    return None
+
+
+def estimate_refuses(values, key, value):
+    """Sentence with which the estimate refuses it."""
+    surfaces = {"B2": {"material": "Soft"}, "Mine": {"like": "B2", "rms_nm": 3, "material": "Soft"}}
+    sections = {"surfaces": surfaces, "materials": {"Soft": {}}, "solid": {}, "water": {}}
+    sections |= {"pairs": {"p": {"beam": "Mine", "substrate": "Sub1"}}}
+    place = sections
+    for name in values:
+        place = place.setdefault(name, {})
+    place[key] = value
+    reason = questions({"devices": {"D": LEVER | {"pair": "p"}}} | sections, content())["D"]
+    return str(reason) if isinstance(reason, Impossible) else None
+
+
+def _schema_of(values):
+    """Schema of the keys at a path."""
+    part = schema()["properties"][values[0]]
+    for name in values[1:]:
+        part = part["properties"][name] if name in part.get("properties", {}) else part["additionalProperties"]
+    return part["properties"]
+
+
+PLACES = [("surfaces", "Mine"), ("materials", "Soft"), ("solid",), ("water",)]
+KNOWN = {"surfaces": asking.OF_SURFACES, "materials": asking.OF_MATERIALS} | asking.OF_SECTIONS
+
+
+@pytest.mark.parametrize("values", PLACES)
+def test_numbers_that_a_run_refuses_are_refused_with_its_sentence(values):
+    """All numbers of what the estimate reads: each a little beyond each of its ends, and at them."""
+    seen = 0
+    for key, part in _schema_of(values).items():
+        if key not in KNOWN[values[0]] or part.get("type") != "number":
+            continue
+        if key in ("hardness_GPa", "density_kg_per_m3"):
+            continue  # they change no length or force
+        for least, inside in (("minimum", True), ("exclusiveMinimum", False), ("maximum", True)):
+            if least in part:
+                beyond = part[least] * 1.5 + 1 if least == "maximum" else part[least] - 0.5
+                assert (expected := refused(values, key, beyond)), (key, beyond)
+                sentence = estimate_refuses(values, key, beyond)
+                assert sentence, (key, beyond)
+                assert expected.startswith(f"{sentence}:"), (sentence, expected)
+                assert ENDS[key].refusal(part[least]) is None or not inside, (key, least)
+                seen += 1
+    assert seen >= 1
+    assert estimate_refuses(("surfaces", "Mine"), "hurst", 0.9) is None, "the control: what a run takes"
+
+
+@pytest.mark.parametrize("like", ["B1", "B2"])
+def test_a_hurst_exponent_above_one_is_refused_beside_a_typical_surface(like):
+    surface = {"like": like, "rms_nm": 3, "hurst": 1.5}
+    sections = {"surfaces": {"Mine": surface}, "pairs": {"p": {"beam": "Mine", "substrate": "Sub1"}}}
+    reason = questions({"devices": {"D": LEVER | {"pair": "p"}}} | sections, content())["D"]
+    assert str(reason) == "surfaces.Mine.hurst is 1.5, must be a number at least 0 and at most 1"
+
+
+def test_one_moment_alone_and_a_corner_above_the_cutoff_are_refused():
+    sections = {"pairs": {"p": {"beam": "Mine", "substrate": "Sub1"}}}
+    for more, words in (
+        ({"skewness": -0.5}, "both are stated or neither"),
+        ({"corner_rad_per_um": 130}, "no spectrum"),
+    ):
+        surface = {"surfaces": {"Mine": {"like": "B2", "rms_nm": 3} | more}}
+        reason = questions({"devices": {"D": LEVER | {"pair": "p"}}} | sections | surface, content())["D"]
+        assert isinstance(reason, Impossible)
+        assert words in str(reason)
+
+
+def test_constants_beyond_their_ends_are_refused():
+    (reason,) = [OF_ATTRACTION["water"].refusal(0)]
+    assert reason == "is 0, must be a number above 0 and at most 10000"
+    with pytest.raises(Impossible, match="materials.Mine.hamaker_constant_zJ.water is 0"):
+        found(LEVER, of_material(hamaker_constant_zJ={"water": 0, "dry": 100}))
+
+
+# Learning
+
+
+def test_ratios_of_points_are_within_their_range_and_each_its_own():
+    drawn = [attraction.ratio_of(point, 1) for point in attraction.SETS["learn_any"].all]
+    low, high = attraction.RATIOS
+    assert low <= min(drawn) < max(drawn) <= high
+    assert len(set(drawn)) == len(drawn)
+    assert np.median(np.log(drawn)) == pytest.approx(0.5 * math.log(low * high), abs=0.9)
+    for name, effort in attraction.SETS.items():
+        assert effort.all == training.SETS[name].all[: effort.points]
+
+
+def test_solids_of_points_are_within_their_ranges_and_each_its_own():
+    seen = [points.drawn(point, 21) for point in points.SETS["decide_any"].all]
+    sides = [side for _, both in seen for side in both]
+    for key, name in (("young_modulus_GPa", "modulus"), ("contact_angle_deg", "angle")):
+        low, high = points.RANGES[name]
+        numbers = [side[key] for side in sides]
+        assert low <= min(numbers) < max(numbers) <= high
+        assert len(set(numbers)) > 0.9 * len(numbers)
+    assert all(points.TEMPERATURES[0] <= kelvin <= points.TEMPERATURES[1] for kelvin, _ in seen)
+    # polysilicon and silica, by the combining relation of A. J. N. Israelachvili
+    for water, dry in ((4.6, 65), (250, 479)):
+        assert (water**0.5 + 37**0.5) ** 2 == pytest.approx(dry, rel=0.05)
+    constants = [side["hamaker_constant_zJ"] for side in sides]
+    assert all(one["dry"] == pytest.approx((one["water"] ** 0.5 + 37**0.5) ** 2, rel=1e-2) for one in constants)
+
+
+def test_seeds_of_tested_points_are_in_no_other_set():
+    others = {effort.seed for effort in training.SETS.values()}
+    assert not others & {effort.seed for effort in points.SETS.values()}
+    assert len({effort.seed for effort in points.SETS.values()}) == len(points.SETS)
+
+
+def test_a_plan_has_the_solids_and_the_stiffness_of_its_point():
+    valid, (temperature, materials) = training.base(), points.drawn(POINT, 21)
+    plan = points.with_solids(training.plan_of(points.of_beam(POINT, materials, valid), valid), temperature, materials)
+    device = plan.config["devices"][training.DEVICE]
+    modulus = 1e9 * materials[0]["young_modulus_GPa"]
+    assert modulus * (1e-6 * device["thickness_um"]) ** 3 / (1e-6 * device["gap_um"]) ** 2 == pytest.approx(
+        POINT.stiffness, rel=1e-3
+    )
+    water = training.water_of(plan)
+    assert water.temperature == temperature
+    assert water.contact_angles == pytest.approx([math.radians(side["contact_angle_deg"]) for side in materials])
+    humidity = points.humidity_of(temperature, materials, 3e-9)
+    assert water.film(humidity)[0] == pytest.approx(3e-9, rel=2e-3)
+
+
+def test_rows_of_the_attraction_have_the_change_of_their_own_tips(monkeypatch, tmp_path):
+    airs, factor = np.array([[2e-9, 1.0], [5e-9, 1.0]]), 0.8
+    slopes = 0.05 * np.exp(0.1 * np.random.default_rng(1).normal(size=(2, 3, 400)))
+    forces = 1e6 * np.exp(0.1 * np.random.default_rng(2).normal(size=(2, 400)))
+    own = {"airs": airs, "slopes": slopes, "forces": forces, "sides": np.array([2.0, 3.0])}
+    more = {"ratio": np.array(4.0), "slopes": slopes * 4**factor, "forces": forces * 4**factor}
+    monkeypatch.setattr(rows, "_both", lambda *_: [(POINT, more, own)])
+    tips, of_patches = rows.rows_of_tips(tmp_path, 164e9), rows.rows_of_patches(tmp_path, 164e9)
+    assert (len(tips.surface), len(of_patches.surface)) == (6, 2)
+    for found_rows in (tips, of_patches):
+        for values in found_rows.values.values():
+            np.testing.assert_allclose(values, -factor, rtol=1e-6)
+        np.testing.assert_allclose(found_rows.coordinates[:, -1], math.log(4))
+    expected = states_of(POINT, airs, 164e9)[1][2].coordinates
+    np.testing.assert_allclose(tips.coordinates[-1, :-1], expected)
+    assert tips.coordinates.shape[1] == rows.OF_TIPS_ATTRACTED[-1] + 1 == len(COORDINATES) + 1
+    assert of_patches.coordinates.shape[1] == rows.OF_PATCHES_ATTRACTED[-1] + 1 == len(OF_PATCHES) + 1
+
+
+def test_a_tested_length_on_other_solids_is_that_of_its_changed_tips(tmp_path):
+    name, point = "decide_any", points.SETS["decide_any"].all[0]
+    folder = tmp_path / points.FOLDER / name
+    (tmp_path / points.FOLDER / patches.FOLDER / name).mkdir(parents=True)
+    folder.mkdir()
+    temperature, materials = points.drawn(point, points.SETS[name].seed)
+    humidity = points.humidity_of(temperature, materials, 3e-9)
+    slopes = 0.05 * np.exp(0.1 * np.random.default_rng(1).normal(size=2000))
+    training.save({"humidity": np.array(humidity), "changed": slopes}, folder / "0000.npz")
+    processes = falling(1.0), None, process_of(at_0=-0.1, at_1=-0.1, at_2=-0.1)
+    (one,) = rows.tested(tmp_path, name, 164e9, -1.0, lambda _: processes)
+    assert one.true == pytest.approx(1.5 / np.quantile(slopes, 0.8413), rel=0.02)
+    pair, kelvin = rows.solids_of(point, name)
+    water = film(humidity, kelvin, pair.wetting)
+    expected = 1.5 / (13.5 * water.energy / point.stiffness) ** 0.25 * math.exp(0.9)
+    assert one.estimate == pytest.approx(expected * pair.attraction(water.energy) ** -0.1)
+    numbers = {"humidity": np.array(humidity), "sides": np.array([2.0, 3.0]), "ratio": 0.8, "power": 1.0}
+    numbers |= {"forces": 1e6 * np.exp(0.1 * np.random.default_rng(1).normal(size=(1, 2000)))}
+    training.save(numbers, tmp_path / points.FOLDER / patches.FOLDER / name / "0000.npz")
+    of_forces = falling(1.0), process_of(ratio=0.0, power=1.0), processes[2]
+    (force,) = rows.tested_forces(tmp_path, name, 164e9, -1.0, lambda _: of_forces)
+    assert 1 / force.true == pytest.approx(6e-12 * 0.8 * np.quantile(numbers["forces"], 0.8413), rel=0.02)
