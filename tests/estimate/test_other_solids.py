@@ -16,10 +16,11 @@ from stiction.constants import HAMAKER_CONSTANT
 from stiction.contact.materials import Solid
 from stiction.contact.solids import composite_modulus, hamaker_constant
 from stiction.estimate import question as asking
-from stiction.estimate.answer import answer
+from stiction.estimate.answer import CONFIDENCES, OF_OTHER_SOLIDS, answer
 from stiction.estimate.bridge import MiddleState
 from stiction.estimate.force import reciprocals
-from stiction.estimate.learning import patches, training
+from stiction.estimate.learning import errors as of_estimates
+from stiction.estimate.learning import make, patches, training
 from stiction.estimate.learning.other_solids import attraction, points, rows
 from stiction.estimate.learning.rows import states_of
 from stiction.estimate.length import Impossible, NotLearnt, lengths, of_solids
@@ -142,11 +143,11 @@ def test_stronger_attraction_shortens_by_what_was_learnt_for_each_logarithm():
     assert more.at(0.0) == pytest.approx(reciprocals(PATCH, *forces).at(0.0) * math.exp(-0.1))
 
 
-def test_lengths_of_bridges_change_by_a_quarter_of_the_change_of_forces():
+def test_lengths_of_bridges_change_by_what_was_learnt_and_moduli_act_in_their_places():
     from stiction.estimate import bridge
 
     state = MiddleState(HEIGHTS, WATER, 2e-6, 2e-6, 30e-6, 50e6, 164e9, 164e9)
-    learnt = falling(0.5), process_of(shift=0.0, power=1.0), process_of(at_0=-0.4, at_1=-0.4, at_2=-0.4)
+    learnt = falling(0.5), process_of(shift=0.0, power=1.0), process_of(at_0=-0.1, at_1=-0.1, at_2=-0.1)
     own, strong = (bridge.lengths(each, *learnt) for each in (state, replace(state, attraction=math.e)))
     assert strong.at(-2.0) == pytest.approx(own.at(-2.0) * math.exp(-0.1))
     stiff = replace(state, modulus_in_contact=2 * 164e9).coordinates
@@ -352,15 +353,24 @@ def test_a_plan_has_the_solids_and_the_stiffness_of_its_point():
     assert water.film(humidity)[0] == pytest.approx(3e-9, rel=2e-3)
 
 
-def test_rows_of_the_attraction_have_the_change_of_their_own_tips(monkeypatch, tmp_path):
+def test_rows_of_the_attraction_have_the_change_of_their_own_contacts(monkeypatch, tmp_path):
     airs, factor = np.array([[2e-9, 1.0], [5e-9, 1.0]]), 0.8
     slopes = 0.05 * np.exp(0.1 * np.random.default_rng(1).normal(size=(2, 3, 400)))
     forces = 1e6 * np.exp(0.1 * np.random.default_rng(2).normal(size=(2, 400)))
     own = {"airs": airs, "slopes": slopes, "forces": forces, "sides": np.array([2.0, 3.0])}
     more = {"ratio": np.array(4.0), "slopes": slopes * 4**factor, "forces": forces * 4**factor}
+    sizes = np.array([[2e-6, 2e-6, 0.0], [3e-6, 1e-6, 0.0]])
+    lengths_held = 2e-4 * np.exp(0.1 * np.random.default_rng(3).normal(size=(2, 400)))
+    lost = np.where(np.arange(400) < 300, np.inf, lengths_held[1])
+    own |= {"sizes": sizes, "lengths": lengths_held}
+    more |= {"lengths": np.array([lengths_held[0] * 4**factor, lost])}
     monkeypatch.setattr(rows, "_both", lambda *_: [(POINT, more, own)])
     tips, of_patches = rows.rows_of_tips(tmp_path, 164e9), rows.rows_of_patches(tmp_path, 164e9)
-    assert (len(tips.surface), len(of_patches.surface)) == (6, 2)
+    of_bridges = rows.rows_of_bridges(tmp_path, 164e9)
+    assert (len(tips.surface), len(of_patches.surface), len(of_bridges.surface)) == (6, 2, 1), (
+        "free bridges are unknown"
+    )
+    np.testing.assert_allclose(of_bridges.values["at_2"], factor, rtol=1e-6)
     for found_rows in (tips, of_patches):
         for values in found_rows.values.values():
             np.testing.assert_allclose(values, -factor, rtol=1e-6)
@@ -368,6 +378,7 @@ def test_rows_of_the_attraction_have_the_change_of_their_own_tips(monkeypatch, t
     expected = states_of(POINT, airs, 164e9)[1][2].coordinates
     np.testing.assert_allclose(tips.coordinates[-1, :-1], expected)
     assert tips.coordinates.shape[1] == rows.OF_TIPS_ATTRACTED[-1] + 1 == len(COORDINATES) + 1
+    assert of_bridges.coordinates.shape[1] == rows.OF_BRIDGES_ATTRACTED[-1] + 1
     assert of_patches.coordinates.shape[1] == rows.OF_PATCHES_ATTRACTED[-1] + 1 == len(OF_PATCHES) + 1
 
 
@@ -381,15 +392,57 @@ def test_a_tested_length_on_other_solids_is_that_of_its_changed_tips(tmp_path):
     slopes = 0.05 * np.exp(0.1 * np.random.default_rng(1).normal(size=2000))
     training.save({"humidity": np.array(humidity), "changed": slopes}, folder / "0000.npz")
     processes = falling(1.0), None, process_of(at_0=-0.1, at_1=-0.1, at_2=-0.1)
-    (one,) = rows.tested(tmp_path, name, 164e9, -1.0, lambda _: processes)
+    (one,) = rows.tested(tmp_path, name, -1.0, processes, as_polysilicon=False)
     assert one.true == pytest.approx(1.5 / np.quantile(slopes, 0.8413), rel=0.02)
     pair, kelvin = rows.solids_of(point, name)
     water = film(humidity, kelvin, pair.wetting)
     expected = 1.5 / (13.5 * water.energy / point.stiffness) ** 0.25 * math.exp(0.9)
     assert one.estimate == pytest.approx(expected * pair.attraction(water.energy) ** -0.1)
+    (control,) = rows.tested(tmp_path, name, -1.0, processes, as_polysilicon=True)
+    assert control.true == one.true
+    assert control.estimate != pytest.approx(one.estimate, rel=1e-3)
     numbers = {"humidity": np.array(humidity), "sides": np.array([2.0, 3.0]), "ratio": 0.8, "power": 1.0}
     numbers |= {"forces": 1e6 * np.exp(0.1 * np.random.default_rng(1).normal(size=(1, 2000)))}
     training.save(numbers, tmp_path / points.FOLDER / patches.FOLDER / name / "0000.npz")
     of_forces = falling(1.0), process_of(ratio=0.0, power=1.0), processes[2]
-    (force,) = rows.tested_forces(tmp_path, name, 164e9, -1.0, lambda _: of_forces)
+    (force,) = rows.tested_forces(tmp_path, name, -1.0, of_forces, as_polysilicon=False)
     assert 1 / force.true == pytest.approx(6e-12 * 0.8 * np.quantile(numbers["forces"], 0.8413), rel=0.02)
+
+
+def test_intervals_of_other_solids_are_wider_but_not_in_dry_air():
+    def widths(sections, **keys):
+        """Ratios of the ends of all intervals."""
+        row = found(LEVER, sections, **keys).chosen
+        return [high / low for low, high in row.intervals.values()]
+
+    part = content()
+    for section in (part, part["stoppers"], part["bridges"]):
+        for name, margin in section["margins"].items():
+            assert section[OF_OTHER_SOLIDS][name] >= margin
+    almost = {"solid": {"young_modulus_GPa": 164.0001}}
+    for wide, own, name in zip(widths(almost), widths({}), CONFIDENCES, strict=True):
+        assert math.log(wide) / math.log(own) == pytest.approx(
+            part[OF_OTHER_SOLIDS][name] / part["margins"][name], rel=1e-3
+        )
+    dry_almost, dry_own = (widths(sections, humidities=["dry"]) for sections in (almost, {}))
+    assert dry_almost == pytest.approx(dry_own, rel=1e-4)
+
+
+def test_margins_of_other_solids_are_conformal_and_no_less_than_those_of_polysilicon(monkeypatch):
+    rng, part = np.random.default_rng(1), content()
+    errors = {0.02: rng.normal(size=40) * 0.02, 1.0: rng.normal(size=40)}
+
+    def tested(scale):
+        """Errors of surfaces of a scale, half in each set."""
+        surfaces = [of_estimates.Tested(k, 0.1, math.exp(error), 1.0) for k, error in enumerate(errors[scale])]
+        return lambda _folder, name, *_, **__: surfaces[1::2] if "any" in name else surfaces[::2]
+
+    monkeypatch.setattr(make.of_solids, "tested", tested(0.02))
+    monkeypatch.setattr(make.of_solids, "tested_forces", tested(1.0))
+    found_margins = make.margins_of_other_solids(None, part)
+    assert found_margins[""] == part["margins"], "small errors widen nothing"
+    stoppers = part["stoppers"]
+    expected = of_estimates.conformal(np.abs(errors[1.0]) / math.hypot(0.1, stoppers["rest"]), 0.9)
+    assert found_margins["stoppers"]["90"] == pytest.approx(expected, abs=1e-3)
+    growth = found_margins["stoppers"]["90"] / stoppers["margins"]["90"]
+    assert found_margins["bridges"]["90"] == pytest.approx(growth * part["bridges"]["margins"]["90"], rel=1e-3)

@@ -27,6 +27,8 @@ from stiction.estimate.voltage import Driven
 FRACTIONS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 #: Fraction for the length to build.
 CHOSEN = FRACTIONS[2]
+#: Key of the margins of other solids than polysilicon, beside those of polysilicon.
+OF_OTHER_SOLIDS = "margins_of_other_solids"
 #: Confidences of the intervals, and quantiles of Student's distribution with three degrees of freedom for them.
 CONFIDENCES = ("90", "95")
 _STUDENT = {"90": 2.353363, "95": 3.182446}
@@ -211,8 +213,16 @@ def _in_air(question, air, table, tips, full):
     pairs = [beam + substrate]
     pairs += [question.members[0].get(name, beam) + question.members[1].get(name, substrate) for name in names]
     stated, *members = (_lengths(question, heights, air, table, tips, full) for heights in pairs)
-    errors = question.errors(table["dry"] if question.is_dry(air) else table)
+    errors = _errors(question, table["dry"] if question.is_dry(air) else table)
     return LengthsInAir(errors, stated, tuple(members), question.averaged, question.closed)
+
+
+def _errors(question, part):
+    """Numbers about the errors of its lengths in a part of the table. In dry air, other solids are exactly similar."""
+    errors = question.errors(part)
+    if question.is_of_polysilicon or OF_OTHER_SOLIDS not in errors:
+        return errors
+    return {**errors, "margins": errors[OF_OTHER_SOLIDS]}
 
 
 def _lengths(question, heights, air, table, tips, full):

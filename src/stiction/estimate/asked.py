@@ -43,6 +43,11 @@ class Asked:
         """Largest fraction that is known after all touchdowns [-]."""
         return most_after(self.touchdowns)
 
+    @property
+    def is_of_polysilicon(self) -> bool:
+        """Whether solids and water are those of most surfaces that were learnt."""
+        return self.solids == SolidPair() and self.temperature == REFERENCE_TEMPERATURE
+
     def is_dry(self, air: float) -> bool:
         """Whether no water condenses between its surfaces at a humidity [-]."""
         return not (is_humid(air) and self.solids.is_wetted)

@@ -17,7 +17,7 @@ rest is learnt.
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 from stiction.config.units import to_si
 from stiction.estimate.asked import Asked
@@ -85,6 +85,7 @@ class MiddleState:
     modulus: float  #: E of the bridge [Pa]
     modulus_in_contact: float  #: E of the solids [Pa]
     attraction: float = 1.0  #: r of `stiction.estimate.solids` [-]
+    names: ClassVar[tuple[str, ...]] = COORDINATES
 
     @property
     def flooded_length(self) -> float:
@@ -116,12 +117,8 @@ class MiddleState:
         return Stretched.of(self.stress, self.thickness, self.modulus)
 
 
-#: Power with which lengths change as reciprocals of forces. ASSUME: on other solids energies change as forces.
-_POWER = 1 / 4
-
-
 def lengths(state: MiddleState, middle: Surrogate, full: Surrogate, attraction: Surrogate | None = None) -> Lengths:
-    """Lengths without stress that are held as well as those under it [m]. The attraction is that of stoppers.
+    """Lengths without stress that are held as well as those under it [m].
 
     Raises
     ------
@@ -129,7 +126,7 @@ def lengths(state: MiddleState, middle: Surrogate, full: Surrogate, attraction: 
         If the state is beyond what was learnt.
     """
     change, values = (known_at(process, state.coordinates, COORDINATES) for process in (full, middle))
-    summits = falling(of_solids(values, state.patch, attraction, _POWER), math.log(state.flooded_length))
+    summits = falling(of_solids(values, state, attraction), math.log(state.flooded_length))
     return changed(summits, change["shift"], change["power"])
 
 
@@ -177,8 +174,8 @@ class Bridge(Asked):
         sizes = self.thickness, self.gap, self.width, self.stress
         solids, attraction = self.solids, self.solids.attraction(water.energy)
         state = MiddleState(heights, water, *sizes, solids.beam_modulus, solids.modulus, attraction)
-        learnt = (table["bridges"]["middle"], table["bridges"]["full"], table["stoppers"]["attraction"])
-        return lengths(state, *(Surrogate(**each) for each in learnt))
+        learnt = (Surrogate(**table["bridges"][name]) for name in ("middle", "full", "attraction"))
+        return lengths(state, *learnt)
 
     def in_dry_air(self, _heights: Heights, _table: Mapping[str, Any]) -> Lengths:
         """Lengths in dry air, which are not known."""

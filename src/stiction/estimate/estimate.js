@@ -44,11 +44,11 @@ function film(humidity, temperature, wetting, [tension, volume]) {
 // solids
 const POLYSILICON = {modulus: 164e9, beamModulus: 164e9, throughWater: 9.75e-20, inDryAir: 1.865e-19, wetting: 2}, ROUNDING = 1e-9;
 const attractionOf = (solids, {energy}, [tension]) => solids.throughWater / POLYSILICON.throughWater * (POLYSILICON.wetting * tension / energy);
-function ofSolids(values, state, place, {process, names}, power = 1) {
+function ofSolids(values, state, place, {process, names}) {
   const by = Math.log(state.attraction);
   if (!by) return values;
   const byOne = known(process, [...place, by], [...names, "attraction of the solids beside that of the water (from Hamaker constant and contact angles)"]);
-  return {...values, ...Object.fromEntries(["at_0", "at_1", "at_2"].map((name) => [name, values[name] + power * by * byOne[name]]))};
+  return {...values, ...Object.fromEntries(["at_0", "at_1", "at_2"].map((name) => [name, values[name] + by * byOne[name]]))};
 }
 const curvature = ({moments: [, second, fourth]}) => Math.sqrt(fourth / second);
 const tensionOf = ({height, energy}) => energy / height;
@@ -210,14 +210,13 @@ function ofMiddle(state, {decay}) {
   const contact = contactOf(state);
   return [...ofPatch(middleOf(state)), Math.log(state.gap / state.film.height), decay * contact];
 }
-function lengthsOfBridge(state, closed, {middle, full, coordinates: names}, stoppers) {
+function lengthsOfBridge(state, closed, {middle, full, attraction, coordinates: names}) {
   const place = ofMiddle(state, closed), {shift, power} = known(full, place, names);
-  const learnt = {process: stoppers.attraction, names: stoppers.coordinates};
-  const values = ofSolids(known(middle, place, names), state, ofPatch(middleOf(state)), learnt, 1 / 4);
+  const values = ofSolids(known(middle, place, names), state, place, {process: attraction, names});
   const {logarithms, slope} = falling(values, Math.log(floodedLength(state))), [median] = logarithms;
   return {logarithms: logarithms.map((each) => median + shift + power * (each - median)), slope: power * slope};
 }
-function ofBridge({thickness, gap, width, stress, length, solids = POLYSILICON}, {water: ofWater, bridges, stoppers}) {
+function ofBridge({thickness, gap, width, stress, length, solids = POLYSILICON}, {water: ofWater, bridges}) {
   const modulus = solids.beamModulus, closed = stretchedBy(stress, thickness, modulus);
   return {
     lengths: (heights, water) => {
@@ -227,7 +226,7 @@ function ofBridge({thickness, gap, width, stress, length, solids = POLYSILICON},
         if (outside) throw new NotLearnt(`the ${name} of a bridge must be from ${low} to ${high} ${symbol}`);
       }
       const attraction = attractionOf(solids, water, ofWater);
-      return lengthsOfBridge({heights, film: water, thickness, gap, width, modulus, inContact: solids.modulus, attraction}, closed, bridges, stoppers);
+      return lengthsOfBridge({heights, film: water, thickness, gap, width, modulus, inContact: solids.modulus, attraction}, closed, bridges);
     },
     inDryAir: () => { throw new NotLearnt("a bridge was not learnt in dry air"); },
     closed, errors: (part) => part.bridges, stated: length, row: ({length, intervals}) => ({size: length, intervals}),
@@ -419,11 +418,13 @@ function centre(one, score) {
 function answer(question, table) {
   const kind = question.sides ? ofStopper : "stress" in question ? ofBridge : ofCantilever;
   const {lengths, inDryAir, closed, errors, stated, row} = kind(question, table);
-  const {wetting} = question.solids || POLYSILICON, temperature = question.temperature || REFERENCE;
+  const solids = question.solids || POLYSILICON, {wetting} = solids, temperature = question.temperature || REFERENCE;
+  const isOfPolysilicon = temperature === REFERENCE && Object.keys(POLYSILICON).every((key) => solids[key] === POLYSILICON[key]);
+  const errorsOf = (part) => isOfPolysilicon || !part.margins_of_other_solids ? part : {...part, margins: part.margins_of_other_solids};
   const airs = question.humidities.map((air) => {
     const isHumid = air > 0 && wetting > ROUNDING;
     const of = isHumid ? (each) => lengths(each, film(air, temperature, wetting, table.water)) : inDryAir;
-    return {stated: of(question.stated), members: question.members.map(of), errors: errors(isHumid ? table : table.dry)};
+    return {stated: of(question.stated), members: question.members.map(of), errors: errorsOf(errors(isHumid ? table : table.dry))};
   });
   const once = (p) => -Math.expm1(Math.log1p(-p) / question.touchdowns);
   const rows = FRACTIONS.map((fraction) => {

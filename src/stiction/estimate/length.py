@@ -6,8 +6,9 @@ Plain Python: the page has the same arithmetic in JavaScript.
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import ClassVar, Protocol
 
-from stiction.estimate.state import COORDINATES, OF_SOLIDS, PatchState, TipState
+from stiction.estimate.state import COORDINATES, OF_SOLIDS, TipState
 from stiction.estimate.table import Surrogate
 
 #: Normal scores of the learnt lengths: the last one and the slope there give all shorter lengths.
@@ -90,12 +91,16 @@ def _on_summits(state, gap, tips, attraction):
     return falling(values, math.log(1.5 * gap / state.flooded_slope))
 
 
-def of_solids(
-    values: Mapping[str, float], state: TipState | PatchState, attraction: Surrogate | None, power: float = 1.0
-) -> Mapping[str, float]:
-    """Quantities on solids that attract each other as those of a state, from those on polysilicon.
+class Attracted(Protocol):
+    """State of solids that attract each other."""
 
-    They change by a power of what is learnt.
+    attraction: float
+    coordinates: Sequence[float]
+    names: ClassVar[tuple[str, ...]]
+
+
+def of_solids(values: Mapping[str, float], state: Attracted, attraction: Surrogate | None) -> Mapping[str, float]:
+    """Quantities on solids that attract each other as those of a state, from those on polysilicon.
 
     Raises
     ------
@@ -105,7 +110,7 @@ def of_solids(
     if not (attraction and (by := math.log(state.attraction))):
         return values
     by_one = known_at(attraction, (*state.coordinates, by), (*state.names, OF_SOLIDS))
-    return dict(values) | {name: values[name] + power * by * by_one[name] for name in NAMES[:3]}
+    return dict(values) | {name: values[name] + by * by_one[name] for name in NAMES[:3]}
 
 
 #: Least fall of the logarithm of a length by one normal score.

@@ -14,14 +14,13 @@ import numpy as np
 
 from stiction.config.reading import read
 from stiction.config.units import from_si
-from stiction.estimate.answer import CONFIDENCES, answer, difficulty
+from stiction.estimate.answer import CONFIDENCES, OF_OTHER_SOLIDS, answer, difficulty
 from stiction.estimate.learning import dry_rows
 from stiction.estimate.learning.design import SurfaceLaw
 from stiction.estimate.learning.dry import CONSTANTS, DryEffort
 from stiction.estimate.learning.errors import coverage, noise_of, scores, tested, tested_bridges, tested_forces
 from stiction.estimate.learning.other_solids import rows as of_solids
 from stiction.estimate.learning.other_solids.points import RANGES, TEMPERATURES
-from stiction.estimate.learning.other_solids.points import SETS as OTHER_SOLIDS
 from stiction.estimate.length import NotLearnt
 from stiction.estimate.question import questions
 from stiction.estimate.table import Surrogate, content, known
@@ -38,7 +37,10 @@ SETS = {
 }
 
 
-#: Head of the tables of drawn surfaces.
+#: Those of other solids.
+OTHER_SOLIDS = {name: words for name, words in SETS.items() if not name.endswith(SurfaceLaw.PAPER)}
+#: Rule and head of the tables of drawn surfaces.
+_RULE = "|---|---|---|---|---|---|---|---|---|"
 _HEAD = "| surfaces | number | refused | mean [%] | rms [%] | largest [%] | half [%] | inside 90 % | inside 95 % |"
 #: Words before both tables of drawn surfaces.
 _OF_LENGTHS = (
@@ -63,8 +65,12 @@ _IN_DRY_AIR = (
 )
 _OF_SOLIDS = (
     "{} of other solids, with moduli of {:g} to {:g} GPa, Hamaker constants through water of {:g} to {:g} zJ and "
-    "contact angles of {:g} to {:g}° on either side, at {:g} to {:g} K. None of them decides. In the control, solids "
-    "attract each other beside the water as polysilicon does:"
+    "contact angles of {:g} to {:g}° on either side, at {:g} to {:g} K. Half of them decide how much wider intervals "
+    "of other solids are, as all intervals. The control takes them as polysilicon that water wets perfectly:"
+)
+_OTHER_BRIDGES = (
+    "Intervals of bridges of other solids are wider by the larger of both factors. No such bridge was tested in full "
+    "contact. In dry air other moduli are exactly similar, and intervals are those above."
 )
 _FORCES_IN_DRY_AIR = "Forces in dry air, beside patches changed by {} strips of 3 µm in full contact:"
 
@@ -79,7 +85,7 @@ def lines(folder: Path) -> Iterator[str]:
         (_IN_DRY_AIR.format(*CONSTANTS, of_tips), dry_rows.tested, dry, "tips"),
         (_FORCES_IN_DRY_AIR.format(of_patches), dry_rows.tested_forces, dry["stoppers"], "forces"),
     ):
-        yield from (words, "", _HEAD, "|---|---|---|---|---|---|---|---|---|")
+        yield from (words, "", _HEAD, _RULE)
         processes = [Surrogate(**errors[name]) for name in (first, "full")]
         for name, of_set in SETS.items():
             learnt = table["modulus"], errors["tested_score"], lambda _, learnt_processes=processes: learnt_processes
@@ -93,28 +99,26 @@ def lines(folder: Path) -> Iterator[str]:
 def _of_other_solids(folder, table):
     """Lines of the tables of other solids."""
     ranges = [end for name in ("modulus", "hamaker", "angle") for end in RANGES[name]]
-    for words, test, errors, names in (
-        ("Lengths", of_solids.tested, table, ("tips", "full", "attraction")),
-        ("Forces", of_solids.tested_forces, table["stoppers"], ("forces", "full", "attraction")),
+    for words, test, errors, first in (
+        ("Lengths", of_solids.tested, table, "tips"),
+        ("Forces", of_solids.tested_forces, table["stoppers"], "forces"),
     ):
         yield from (
             _OF_SOLIDS.format(words, *ranges, *TEMPERATURES),
             "",
             _HEAD,
-            "|---|---|---|---|---|---|---|---|---|",
+            _RULE,
         )
-        learnt = [Surrogate(**errors[name]) for name in names]
-        for law, of_law in ((SurfaceLaw.TYPICAL, "like a typical surface"), (SurfaceLaw.ANY, "any surface")):
-            for of_set, processes in ((of_law, learnt), (f"{of_law}, control", learnt[:-1])):
-                sets = [name for name in OTHER_SOLIDS if name.endswith(law)]
-                numbers = (
-                    table["modulus"],
-                    errors["tested_score"],
-                    lambda _, learnt_processes=processes: learnt_processes,
-                )
-                if surfaces := [surface for name in sets for surface in test(folder, name, *numbers)]:
-                    yield _row(of_set, surfaces, errors)
+        learnt = errors["tested_score"], [Surrogate(**errors[name]) for name in (first, "full", "attraction")]
+        wider = {**errors, "margins": errors[OF_OTHER_SOLIDS]}
+        for name, of_set in OTHER_SOLIDS.items():
+            if surfaces := list(test(folder, name, *learnt, as_polysilicon=False)):
+                yield _row(of_set, surfaces, wider)
+        checked = [name for name in OTHER_SOLIDS if name.startswith("check")]
+        if control := [surface for name in checked for surface in test(folder, name, *learnt, as_polysilicon=True)]:
+            yield _row("in no decision, control", control, wider)
         yield ""
+    yield from (_OTHER_BRIDGES, "")
 
 
 def _of_noise(folder, score):

@@ -5,7 +5,7 @@ python -m stiction.estimate.learning.make FOLDER
 
 import json
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +15,7 @@ from stiction.config.reading import paper
 from stiction.config.units import to_si
 from stiction.constants import WATER_MOLAR_VOLUME, WATER_SURFACE_ENERGY
 from stiction.estimate import dry as of_dry_air
-from stiction.estimate.answer import CHOSEN, CONFIDENCES
+from stiction.estimate.answer import CHOSEN, CONFIDENCES, OF_OTHER_SOLIDS
 from stiction.estimate.bridge import COORDINATES as OF_BRIDGES
 from stiction.estimate.learning import dry, dry_patches, dry_rows, patches
 from stiction.estimate.learning.bridge_rows import rows_of_changes, rows_of_middles
@@ -74,6 +74,8 @@ def table_of(folder: Path) -> dict[str, Any]:
         "dry": in_dry_air(folder, modulus),
     }
     table |= errors_of(tested, folder, modulus, tips, full)
+    for section, margins in margins_of_other_solids(folder, table).items():
+        (table[section] if section else table)[OF_OTHER_SOLIDS] = margins
     control = {"slopes": control_of_slopes(), "forces": control_of_forces(), "patches": control_of_patches()}
     control["bridges"] = control_of_bridges()
     return table | {"control": control}
@@ -123,6 +125,7 @@ def bridges_of(folder: Path, modulus: float) -> dict[str, Any]:
         "coordinates": OF_BRIDGES,
         "middle": middle.content,
         "full": full.content,
+        "attraction": attraction_of(of_solids.rows_of_bridges(folder, modulus), of_solids.OF_BRIDGES_ATTRACTED),
     }
     return section | errors_of(tested_bridges, folder, modulus, middle, full)
 
@@ -195,6 +198,34 @@ def margins(test: Test, folder: Path, modulus: float, of_rest: float, *processes
         for law in (SurfaceLaw.TYPICAL, SurfaceLaw.ANY)
     ]
     return {name: round(max(conformal(errors, int(name) / 100) for errors in by_law), 4) for name in CONFIDENCES}
+
+
+def margins_of_other_solids(folder: Path, table: Mapping[str, Any]) -> dict[str, dict[str, float]]:
+    """Margins of other solids by section of the table, no less than those of polysilicon.
+
+    From the errors of the sets that decide, both laws together. ASSUME: those of bridges grow as much as those of
+    lengths that tips hold, or as those of forces.
+    """
+    growth = {
+        "": _growth(of_solids.tested, folder, table, "tips"),
+        "stoppers": _growth(of_solids.tested_forces, folder, table["stoppers"], "forces"),
+    }
+    growth["bridges"] = {name: max(each[name] for each in growth.values()) for name in CONFIDENCES}
+    margins = {section: (table[section] if section else table)["margins"] for section in growth}
+    return {
+        section: {name: round(margins[section][name] * factor, 4) for name, factor in factors.items()}
+        for section, factors in growth.items()
+    }
+
+
+def _growth(test, folder, section, first):
+    """Factors of the margins of a section of the table on other solids, by confidence."""
+    processes = [Surrogate(**rounded(section[name])) for name in (first, "full", "attraction")]
+    sets = [f"decide_{law}" for law in (SurfaceLaw.TYPICAL, SurfaceLaw.ANY)]
+    surfaces = [surface for name in sets for surface in test(folder, name, TESTED, processes, as_polysilicon=False)]
+    errors = scores(surfaces, section["rest"])
+    margins = section["margins"]
+    return {name: max(1.0, conformal(errors, int(name) / 100) / margins[name]) for name in CONFIDENCES}
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 """Contacts of the design with solids that attract each other more or less than polysilicon, beside its water.
 
-Tips and patches on summits, on the strips of some points of `stiction.estimate.learning.training` and
-`stiction.estimate.learning.patches`, so that what changes is the attraction alone:
+Tips, patches and bridges on summits, on the strips of some points of `stiction.estimate.learning.training`, `patches`
+and `bridges`, so that what changes is the attraction alone:
 
     python -m stiction.estimate.learning.other_solids.attraction FOLDER [SET [FIRST LAST]]
 """
@@ -16,9 +16,9 @@ import numpy as np
 
 from stiction.config.units import from_si, to_si
 from stiction.constants import HAMAKER_CONSTANT
-from stiction.estimate.learning import patches, training
+from stiction.estimate.learning import bridges, patches, training
 from stiction.estimate.learning.design import Point, states
-from stiction.estimate.learning.training import TrainingTips, main, with_materials
+from stiction.estimate.learning.training import TrainingTips, main, train, with_materials
 from stiction.plan.plan import Plan
 from stiction.streams import stream
 
@@ -32,8 +32,12 @@ AIRS = 3
 #: Sets to learn from: the first points of those of polysilicon.
 SETS = {
     name: replace(training.SETS[name], points=points, states=AIRS)
-    for name, points in (("learn_any", 40), ("learn_typical", 48))
+    for name, points in (("learn_any", 16), ("learn_typical", 18))
 }
+
+
+#: The same of bridges, which some of the points have.
+OF_BRIDGES = {name: replace(training.SETS[name], points=28, states=AIRS) for name in SETS}
 
 
 def ratio_of(point: Point, seed: int) -> float:
@@ -61,5 +65,20 @@ def computed(point: Point, name: str, valid: dict[str, Any]) -> dict[str, Any]:
     return {"ratio": np.array(ratio), "slopes": slopes, "forces": forces.astype(np.float32)}
 
 
+def computed_bridges(point: Point, name: str, valid: dict[str, Any]) -> dict[str, Any]:
+    """Lengths that the middle of the bridges of one point of a set holds."""
+    effort, of_polysilicon = OF_BRIDGES[name], training.SETS[name]
+    ratio, airs = ratio_of(point, effort.seed), states(of_polysilicon.states, point.number, effort.seed)[:AIRS]
+    plan = scaled(bridges.plan_of(point, valid), ratio)
+    strips = bridges.TrainingStrips.of(point, plan, bridges.STRIPS, effort.seed)
+    each = zip(airs[:, 0], bridges.sizes_of(point, name), strict=False)
+    lengths = np.array([strips.lengths(height, size, effort.patches) for height, size in each])
+    return {"ratio": np.array(ratio), "lengths": lengths.astype(np.float32)}
+
+
 if __name__ == "__main__":
-    main(training.base(), computed, Path(sys.argv[1]) / FOLDER, SETS, *sys.argv[2:])
+    trained = Path(sys.argv[1]) / FOLDER
+    main(training.base(), computed, trained, SETS, *sys.argv[2:])
+    for each, of_set in OF_BRIDGES.items():
+        some = range(0, of_set.points, bridges.EVERY[each])
+        train(trained / bridges.FOLDER / each, of_set.all, some, bridges.base(), computed_bridges)

@@ -46,6 +46,8 @@ SETS = {
     "check_typical": TrainingEffort(16, 23, SurfaceLaw.TYPICAL, 40, to_si(1600, "um"), 1, 1, 400),
     "check_any": TrainingEffort(16, 24, SurfaceLaw.ANY, 40, to_si(1600, "um"), 1, 1, 400),
 }
+#: The same of patches, which the first of these points have.
+OF_PATCHES = {name: replace(effort, points=12 if name.startswith("decide") else 8) for name, effort in SETS.items()}
 
 
 def drawn(point: Point, seed: int) -> tuple[float, list[dict[str, Any]]]:
@@ -112,4 +114,4 @@ def computed_patches(point: Point, name: str, valid: dict[str, Any]) -> dict[str
 if __name__ == "__main__":
     trained = Path(sys.argv[1]) / FOLDER
     main(training.base(), computed, trained, SETS, *sys.argv[2:])
-    main(patches.base(), computed_patches, trained / patches.FOLDER, SETS, *sys.argv[2:])
+    main(patches.base(), computed_patches, trained / patches.FOLDER, OF_PATCHES, *sys.argv[2:])
