@@ -79,6 +79,7 @@ const RAREST = 1e-6, NEARLY_ALL = 0.99; // fractions that are shown
 const WORDS = {[CANTILEVER]: ["length", "µm", "length_um"], [BRIDGE]: ["length", "µm", "length_um"], [STOPPER]: ["force", "µN", "force_uN"]};
 const grouped = (number) => number < 10000 ? `${number}` : `${number}`.replace(/\B(?=(\d{3})+$)/g, "\u00a0");
 const micro = (size) => Number((size * 1e6).toPrecision(3)).toString();
+const outward = (ends) => ends.map((end, side) => bound(end * 1e6, side === 1).toString());
 function percent(part, touchdowns) {
   if (part < RAREST) return `less than ${(100 * RAREST).toFixed(4)} %`;
   return `${part >= after(SCORES[0], touchdowns) ? "at least " : ""}${Number((100 * Math.min(part, NEARLY_ALL)).toPrecision(2))} %`;
@@ -100,28 +101,29 @@ function show() {
 function write(found, {kind, value}) {
   const [name, symbol, key] = WORDS[kind];
   const row = ({fraction, size, intervals}) => `<tr><th scope="row">1 in ${grouped(Math.round(1 / fraction))}</th><td>${micro(size)}</td>` +
-    ["90", "95"].map((key) => `<td>${intervals[key].map(micro).join(" to ")}</td>`).join("") + "</tr>";
+    ["90", "95"].map((key) => `<td>${outward(intervals[key]).join(" to ")}</td>`).join("") + "</tr>";
   const caption = `<caption>${name === "length" ? "Length" : "Force"} at which a fraction sticks [${symbol}]</caption>`;
   byId("table").innerHTML = `${caption}<thead><tr><th scope="col">stuck</th><th scope="col">${name}</th><th scope="col">90 %</th>` +
     `<th scope="col">95 %</th></tr></thead><tbody>${found.rows.map(row).join("")}</tbody>`;
   byId("said").className = "said";
   const dried = found.life && found.life.dried, lowest = found.rows[2].intervals["90"][0], mustDry = dried && dried[0] < lowest;
-  const [least, most] = found.rows[2].intervals["90"].map(micro);
-  const safe = kind === STOPPER ? `at least ${most}` : mustDry ? `at most ${down(dried[0] * 1e6)}, or it can collapse while ${LIQUID} dries` : `at most ${least}`;
+  const [least, most] = outward(found.rows[2].intervals["90"]);
+  const safe = kind === STOPPER ? `at least ${most}` : mustDry ? `at most ${bound(dried[0] * 1e6)}, or it can collapse while ${LIQUID} dries` : `at most ${least}`;
   byId("said").textContent = `1 in 1000 sticks between ${least} and ${most} ${symbol} (90 %): use ${safe}.`;
   const [middle, low, high] = found.stuck.map((part) => percent(part, value("touchdowns")));
   byId("stuck").textContent = `At ${value(key)} ${symbol}, ${middle} stick (95 %: ${low} to ${high}).`;
   byId("life").textContent = found.life ? livesOf(found.life, value(key), kind).join("\n") : "";
 }
 const LIQUID = "liquid", GRAVITY = 9.80665, FATES = ["stands", "may collapse", "collapses"];
-function down(number) { // to three digits, as a bound
+function bound(number, up = false) { // to three digits, not beyond it, of nine that do not show how it was computed
+  if (!Number.isFinite(number)) return number;
   const [digits, power] = number.toExponential(8).split("e");
-  return Number(`${digits.slice(0, 4)}e${power}`);
+  return Number(`${Math[up ? "ceil" : "floor"](Number(digits.replace(".", "")) / 1e6)}e${power - 2}`);
 }
 function livesOf({dried, shock}, length, kind) {
-  const touches = `At ${length} µm it does not touch below a half-sine shock of ${grouped(down(shock / GRAVITY))} g.`;
+  const touches = `At ${length} µm it does not touch below a half-sine shock of ${grouped(bound(shock / GRAVITY))} g.`;
   if (!dried) return [touches];
-  const [stands, collapses, free] = dried.map((size) => down(size * 1e6)), fate = dried.slice(0, 2).filter((size) => length * 1e-6 > size).length;
+  const [stands, collapses, free] = dried.map((size) => bound(size * 1e6)), fate = dried.slice(0, 2).filter((size) => length * 1e-6 > size).length;
   return [`While ${LIQUID} dries, beams stand up to ${stands} µm and collapse beyond ${collapses} µm; ` +
     `after a collapse they stay down if they are longer than ${free} µm${kind === BRIDGE ? "; shorter ones may, too" : ""}.`, `At ${length} µm it ${FATES[fate]} while ${LIQUID} dries.`, touches];
 }

@@ -28,6 +28,7 @@ from stiction.estimate.question import (
     temperature_of,
 )
 from stiction.estimate.table import content, known
+from stiction.rounding import bounding
 
 #: Options of a device on a described surface: key in a file, metavar, help, default.
 OPTIONS = {
@@ -282,7 +283,7 @@ def shown(estimate: Estimate) -> Iterator[str]:
     yield f"{asked.name}: estimate {where}; stated inputs count as exact{left_open}"
     yield f"  stuck            {f'{name} [{symbol}]':<15}90 %            95 %"
     for row in estimate.rows:
-        both = ([_number(end, asked) for end in ends] for ends in row.intervals.values())
+        both = (_outward(ends, asked) for ends in row.intervals.values())
         ends = "    ".join(f"{low:>5} to {high:<5}" for low, high in both)
         yield f"  1 in {1 / row.fraction:<10.0f}  {_number(row.size, asked):>8}     {ends}"
     if estimate.stuck is not None:
@@ -294,8 +295,8 @@ def shown(estimate: Estimate) -> Iterator[str]:
 
 def chosen(estimate: Estimate, subject: str = "") -> str:
     """Interval of the size for 1 in 1000, and the end to use."""
-    (low, high), asked = estimate.chosen.intervals["90"], estimate.question
-    least, most = _number(low, asked), _number(high, asked)
+    asked = estimate.question
+    least, most = _outward(estimate.chosen.intervals["90"], asked)
     learnt = f"1 in {1 / CHOSEN:.0f}{subject} sticks between {least} and {most} {_WORDS[asked.unit][1]} (90 %)"
     if estimate.is_fast:
         return f"{learnt} if it separates slowly: menisci hold more in a shock, and a run says what to use"
@@ -314,6 +315,11 @@ def _percent(fraction, most):
     if fraction < FRACTIONS[-1]:
         return f"less than {100 * FRACTIONS[-1]:.4f} %"
     return f"{'at least ' * (fraction >= most)}{float(f'{100 * min(fraction, _NEARLY_ALL):.2g}'):g} %"
+
+
+def _outward(ends: Sequence[float], question: Question | Stopper | Bridge) -> list[str]:
+    """Ends of an interval in the unit of a question, with three digits, and not within it."""
+    return [bounding(from_si(end, question.unit), 3, up) for end, up in zip(ends, (False, True), strict=True)]
 
 
 def _number(size: float, question: Question | Stopper | Bridge) -> str:
