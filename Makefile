@@ -55,7 +55,7 @@ ifneq (,$(findstring $(SPACE),$(CONFIG)))
 $(error the name of the file in CONFIG contains a space ($(CONFIG)): rename the file)
 endif
 
-.PHONY: help paper smoke example example-process example-beams measured-beams devices model-error asperities pressing surrogate print supplement validation sealed tails full-contact-times deformed attraction figures run report test test-all test-slow nightly lint libraries format slurm cluster mutants bench peers times jobs docs numbers lock clean
+.PHONY: help paper smoke example example-process example-beams measured-beams devices model-error asperities pressing surrogate drawn-devices print supplement validation sealed tails full-contact-times deformed attraction figures run report test test-all test-slow nightly lint libraries format slurm cluster mutants bench peers times jobs docs numbers lock clean
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
 
@@ -145,7 +145,15 @@ surrogate: $(VENV)/ready
 	$(BIN)/python -m stiction.estimate.learning.make runs/surrogate
 	$(BIN)/python -m stiction.estimate.page docs/_static/estimate.html
 	$(BIN)/python -m stiction.estimate.learning.held_out runs/surrogate docs/tables/safe_lengths.csv docs/tables/stoppers.csv \
-	  examples/devices.yaml > docs/tables/estimate.md
+	  examples/devices.yaml docs/tables/drawn_safe_lengths.csv docs/tables/drawn_stoppers.csv examples/drawn_devices.yaml \
+	  > docs/tables/estimate.md
+
+# Simulated limits of ten drawn devices, beside which the table of the estimate shows its own.
+drawn-devices: $(VENV)/ready
+	$(STICTION) run examples/drawn_devices.yaml --directory runs/drawn-devices -- results/tables/safe_lengths.csv \
+	  results/tables/stoppers.csv $(ARGS)
+	cp runs/drawn-devices/results/tables/safe_lengths.csv docs/tables/drawn_safe_lengths.csv
+	cp runs/drawn-devices/results/tables/stoppers.csv docs/tables/drawn_stoppers.csv
 
 figures: $(VENV)/ready
 	$(STICTION) figures $(CONFIG) -- $(ARGS)

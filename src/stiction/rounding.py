@@ -1,11 +1,19 @@
-"""Comparison of numbers up to rounding, and numbers rounded for sentences."""
+"""Comparison of numbers up to rounding, and numbers rounded for sentences. Plain Python."""
 
-import numpy as np
+import math
+from collections.abc import Callable
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 
 #: Relative error that a number has if it was computed in other units or in another order.
 _ROUNDING = 1e-9
+#: Error of a ratio that counts as rounding.
+_OF_RATIO = 1e-8
 #: Number from which on the digits of a rounded one are in groups of three.
 _GROUPED = 9999.5
+#: Text of a missing number.
+MISSING = "–"
+#: Nine digits of a number do not show in which units or order it was computed.
+_COMPUTED = Context(prec=9)
 
 
 def is_multiple(multiple: float, unit: float) -> bool:
@@ -16,7 +24,8 @@ def is_multiple(multiple: float, unit: float) -> bool:
     >>> is_multiple(0.3, 0.1), is_multiple(0.3, 0.2), is_multiple(0.1, 0.3)
     (True, False, False)
     """
-    return bool(np.isclose(multiple / unit, max(1, round(multiple / unit)), rtol=_ROUNDING))
+    ratio = multiple / unit
+    return math.isclose(ratio, max(1, round(ratio)), rel_tol=_ROUNDING, abs_tol=_OF_RATIO)
 
 
 def is_at_most(value: float, limit: float) -> bool:
@@ -62,3 +71,60 @@ def grouped(number: float) -> str:
     ('9999', '10 000', '1 000 000')
     """
     return f"{number:,.0f}".replace(",", " ") if number >= _GROUPED else f"{number:.0f}"
+
+
+def number(value: float, form: str) -> str:
+    """Text of a number in a format such as ``+.1f``, with – for NaN and zero without a minus sign.
+
+    Examples
+    --------
+    >>> number(-0.04, "+.1f"), number(-1.25, ".3g"), number(float("nan"), "g")
+    ('+0.0', '-1.25', '–')
+    """
+    if math.isnan(value):
+        return MISSING
+    text = format(value, form)
+    return text if float(text) else format(0.0, form)
+
+
+def bounding(value: float, digits: int, up: bool) -> str:
+    """Text of a bound with some significant digits, never below it if ``up``, else never above.
+
+    Examples
+    --------
+    >>> bounding(0.0994, 2, up=True), bounding(200.66, 3, up=False), bounding(1234.5, 3, up=True)
+    ('0.1', '200', '1240')
+    >>> bounding(250 * (1 + 1e-15), 3, up=True), bounding(float("nan"), 3, up=True)
+    ('250', '–')
+    """
+    if not math.isfinite(value) or not value:
+        return number(value, "g")
+    return f"{rounded(value, digits, up):f}"
+
+
+def rounded(bound: float, digits: int, up: bool) -> Decimal:
+    """Bound with some significant digits, never below it if ``up``, else never above."""
+    return Context(prec=digits, rounding=ROUND_CEILING if up else ROUND_FLOOR).plus(_as_computed(bound)).normalize()
+
+
+def _as_computed(number):
+    """Number without the digits that depend on how it was computed."""
+    return _COMPUTED.create_decimal(Decimal(float(number)))
+
+
+def lower_to(decimals: int) -> Callable[[float], str]:
+    """Text of a lower bound with some decimals, never above it.
+
+    Examples
+    --------
+    >>> lower_to(1)(219.39), lower_to(1)(219.4), lower_to(1)(float("nan"))
+    ('219.3', '219.4', '–')
+    """
+    step = Decimal(1).scaleb(-decimals)
+
+    def text(value):
+        if not math.isfinite(value):
+            return number(value, "g")
+        return str(_as_computed(value).quantize(step, ROUND_FLOOR))
+
+    return text

@@ -108,3 +108,16 @@ def test_rows_of_a_bridge_agree_with_the_run_within_their_intervals():
             found[air, int(one_in)] = float(estimate)
     assert list(found) == [("0.67", 100), ("0.67", 1000), ("0.67", 10_000)]
     assert sorted(found.values(), reverse=True) == list(found.values())
+
+
+@pytest.mark.parametrize("name", ["", "drawn_"])
+def test_the_sizes_of_a_run_inside_the_intervals_are_counted(name):
+    devices = DEVICES.with_name("drawn_devices.yaml") if name else DEVICES
+    files = (LENGTHS.with_name(f"{name}{LENGTHS.name}"), FORCES.with_name(f"{name}{FORCES.name}"), devices)
+    *rows, count, _ = [line for line in held_out.of_runs(*map(str, files)) if line] + [""]
+    inside = []
+    for row in (cells(line) for line in rows if re.match(r"\| [A-Z]\d \|", line)):
+        low, high = map(float, row[-1].split(" to "))
+        inside += [low <= float(row[3].split()[0]) <= high] if row[2] == "1000" else []
+    assert count == f"At 1 in 1000, {sum(inside)} of {len(inside)} sizes of the run are inside the interval of 90 %."
+    assert 0 < sum(inside) < len(inside), "control: some are outside"

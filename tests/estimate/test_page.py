@@ -12,6 +12,8 @@ import pytest
 import stiction.estimate.table as table_of_estimate
 from stiction.estimate.answer import CONFIDENCES, answer
 from stiction.estimate.bridge import Bridge
+from stiction.estimate.closed.beams import DryingLiquid
+from stiction.estimate.closed.life import Surroundings
 from stiction.estimate.force import Stopper
 from stiction.estimate.length import NotLearnt
 from stiction.estimate.question import Question, surface
@@ -54,7 +56,12 @@ def drawn(rng, of_kind):
     airs, often = rng.uniform(0.4, 0.92, rng.choice([1, 2])).tolist(), int(rng.choice([1, 1000]))
     airs = [*airs[1:], 0.0] if rng.random() < 0.4 else airs
     asked = {"beams": beams, "substrate": substrate, "humidities": airs, "averaged": bool(rng.random() < 0.5)}
-    return asked | {"touchdowns": often} | of_solids(rng) | of_kind(rng)
+    return asked | {"touchdowns": often} | of_solids(rng) | of_kind(rng) | dried(rng)
+
+
+def dried(rng):
+    """Surface tension of a random liquid, zero without one [N/m]."""
+    return {"liquid": float(rng.choice([0, rng.uniform(0.01, 0.075)]))}
 
 
 def of_solids(rng):
@@ -97,7 +104,8 @@ def in_python(question, table):
         [surface(one, library)[0] for one in question["beams"]],
         surface(question["substrate"], library),
     )
-    own = {key: value for key, value in question.items() if key not in ("beams", "substrate", "humidities")}
+    own = {key: value for key, value in question.items() if key not in ("beams", "substrate", "humidities", "liquid")}
+    own["surroundings"] = Surroundings({"Mine": DryingLiquid(question["liquid"])} if question["liquid"] else {})
     named = {str(k): member for k, member in enumerate(members)}
     of = next((one for key, one in (("sides", Stopper), ("stress", Bridge)) if key in question), Question)
     if "solids" in own:
@@ -108,7 +116,13 @@ def in_python(question, table):
     except NotLearnt as reason:
         return str(reason)
     rows = [[row.size, *(end for name in CONFIDENCES for end in row.intervals[name])] for row in found.rows]
-    return [*np.ravel(rows), *found.stuck]
+    return [*np.ravel(rows), *found.stuck, *life_of(found)]
+
+
+def life_of(found):
+    """Lengths of beams that dry, and the shock: none of a stopper, to which the page gives no mass."""
+    dried = [length for each in found.dried.values() for length in each.lengths]
+    return [] if found.is_force else [*dried, found.touching.shock]
 
 
 def in_javascript(answers):
@@ -120,7 +134,8 @@ def in_javascript(answers):
             rows = [
                 [row["size"], *(end for name in CONFIDENCES for end in row["intervals"][name])] for row in found["rows"]
             ]
-            yield [*np.ravel(rows), *found["stuck"]]
+            life = [*(found["life"]["dried"] or []), found["life"]["shock"]] if found["life"] else []
+            yield [*np.ravel(rows), *found["stuck"], *life]
 
 
 @pytest.mark.skipif(NODE is None, reason="node is not on this machine")

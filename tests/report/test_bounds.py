@@ -9,7 +9,8 @@ from stiction.answer.data import Probability
 from stiction.answer.sought import FORCE, LENGTH
 from stiction.report.answer import words
 from stiction.report.devices import life
-from stiction.report.format import bounding, fraction_between, lower_to, percent_bound, safe_size
+from stiction.report.format import bounding, fraction_between, percent_bound, safe_size
+from stiction.rounding import lower_to
 
 FRACTIONS = st.floats(1e-4, 0.9999)
 SIZES = st.floats(1e-8, 1e-2)

@@ -74,24 +74,28 @@ def test_the_file_of_the_page_is_that_of_its_sliders(opened):
 
 
 @pytest.mark.parametrize("kind", ["cantilever", "bridge", "stopper"])
-@pytest.mark.parametrize("known", ["[]", "['hurst', 'corner_rad_per_um', 'kurtosis']"])
+@pytest.mark.parametrize(
+    ("known", "tension"), [("[]", 0), ("['hurst', 'corner_rad_per_um', 'kurtosis']", 21.7), ("[]", 72)]
+)
 @pytest.mark.parametrize("air", ["0.6", "dry"])
 @pytest.mark.parametrize("solids", [OF_POLYSILICON, OTHERS])
 def test_the_command_says_of_the_file_of_the_page_what_the_page_says(
-    opened, tmp_path, capsys, kind, known, air, solids
+    opened, tmp_path, capsys, kind, known, tension, air, solids
 ):
     moved = f"""
     document.getElementById('kind').value = '{kind}';
     for (const [key, value] of Object.entries({json.dumps(solids)})) document.getElementById(key).value = value;
     const air = document.getElementById('humidity');
     air.value = '{air}' === 'dry' ? air.min : '{air}';
+    document.getElementById('tension_mN_per_m').value = '{tension}';
     for (const box of document.querySelectorAll('input[type=checkbox]')) box.checked = false;
     for (const key of {known}) document.getElementById('known_' + key).click();
     document.getElementById('form').dispatchEvent(new Event('input', {{bubbles: true}}));
-    return ['said', 'stuck', 'yaml'].map((id) => document.getElementById(id).textContent);
+    return ['said', 'stuck', 'life', 'yaml'].map((id) => document.getElementById(id).textContent);
     """
-    said, stuck, text = opened.run(moved)
+    said, stuck, life, text = opened.run(moved)
     assert f"humidities: [{air}]" in text
+    assert ("liquids" in text) == (tension > 0 and kind != "stopper")
     assert ("materials:" in text) == (solids is OTHERS)
     (tmp_path / "mine.yaml").write_text(text, encoding="utf-8")
     assert main(["check", str(tmp_path / "mine.yaml"), "-d", str(tmp_path)]) == 0
@@ -106,6 +110,9 @@ def test_the_command_says_of_the_file_of_the_page_what_the_page_says(
     lines = [line.strip() for line in capsys.readouterr().out.splitlines()]
     assert said in lines
     assert stuck in lines
+    life = life.replace("\N{NO-BREAK SPACE}", " ").splitlines()
+    assert life == [line for line in lines if line.startswith("While ") or " it " in line and line not in (said, stuck)]
+    assert len(life) == (0 if kind == "stopper" else 3 if tension else 1)
 
 
 def test_a_stopper_has_its_own_sliders_forces_and_file(opened):

@@ -1,22 +1,11 @@
 """Numbers sought for devices: the largest length, or the smallest restoring force, of which few enough stick."""
 
 from dataclasses import dataclass
-from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
+
+from stiction.rounding import rounded
 
 #: Significant digits of sizes.
 DIGITS = 3
-#: Nine digits of a number do not show in which units or order it was computed.
-_COMPUTED = Context(prec=9)
-
-
-def as_computed(number: float) -> Decimal:
-    """Number without the digits that depend on how it was computed."""
-    return _COMPUTED.create_decimal(Decimal(float(number)))
-
-
-def rounded(bound: float, digits: int, up: bool) -> Decimal:
-    """Bound with some significant digits, never below it if ``up``, else never above."""
-    return Context(prec=digits, rounding=ROUND_CEILING if up else ROUND_FLOOR).plus(as_computed(bound)).normalize()
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -137,7 +137,7 @@ def meniscus_height(
 def least_humidity(
     temperature: float, contact_angles: tuple[float, float] = (0.0, 0.0), molecules: int = MOLECULES
 ) -> float:
-    r"""Humidity of a film n molecules thick between two flats [-]. Below `MOLECULES`, it is no liquid.
+    r"""Humidity of a film n molecules thick between two flats [-]. Below ``MOLECULES``, it is no liquid.
 
     .. math:: \mathrm{RH} = \exp \Bigl( -\frac{\gamma V_m (\cos\theta_1 + \cos\theta_2)}
         {\mathcal{R} T \, n \, d_{H_2 O}} \Bigr)
@@ -188,8 +188,8 @@ def film(
     """Height h_C [m] and tension -ΔP [Pa] of the water at one humidity, see `meniscus_height`.
 
     Both are zero in dry air, whose humidity is 0, and at any humidity between surfaces that are not `is_wetted`. Films
-    below `MOLECULES` count as a liquid with at most the tension `STRENGTH` and the same work between flats; what bounds
-    them is in `stiction.config.mission.airs`.
+    below ``MOLECULES`` count as a liquid with at most the tension `STRENGTH` and the same work between flats; what
+    bounds them is in `stiction.config.mission.airs`.
 
     Raises
     ------

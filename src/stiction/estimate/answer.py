@@ -11,9 +11,11 @@ length has on m typical surfaces the mean :math:`\bar v` and the scatter s, and 
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 from stiction.estimate.bridge import Bridge, Stretched
+from stiction.estimate.closed.life import BeamLife, Dried, StopperLife, Touching
 from stiction.estimate.force import ForceRow, Stopper
 from stiction.estimate.length import Impossible, LengthRow, Lengths, NotLearnt, after, normal_score, score_at
 from stiction.estimate.question import Question
@@ -40,11 +42,54 @@ class Estimate:
     rows: tuple[LengthRow | ForceRow, ...]
     stuck: tuple[float, float, float] | None  #: fraction at the stated length or force, and its ends of 95 %
     humidity: float  #: air that decides
+    life: BeamLife | StopperLife  #: closed forms beside what was learnt
 
     @property
     def chosen(self) -> LengthRow | ForceRow:
         """Row of the length or force to build."""
         return next(row for row in self.rows if row.fraction == CHOSEN)
+
+    @cached_property
+    def dried(self) -> dict[str, Dried]:
+        """Lengths of beams that dry, by liquid."""
+        return self.life.dried()
+
+    @property
+    def is_force(self) -> bool:
+        """Whether its sizes are forces, of which more is safer."""
+        return isinstance(self.question, Stopper)
+
+    @property
+    def _learnt(self):
+        """End of its interval on the safe side [SI]."""
+        least, most = self.chosen.intervals[CONFIDENCES[0]]
+        return most if self.is_force else least
+
+    @property
+    def drying(self) -> str | None:
+        """Liquid whose drying asks for a shorter beam than that end, none without one."""
+        liquid = min(self.dried, key=lambda name: self.dried[name].stands, default=None)
+        return liquid if liquid and self.dried[liquid].stands < self._learnt else None
+
+    @property
+    def _without_shock(self):
+        """Largest length or smallest force if it separates slowly [SI]. As in a run, no stated liquid collapses it."""
+        return self.dried[self.drying].stands if self.drying else self._learnt
+
+    @property
+    def use(self) -> float:
+        """Largest length or smallest force to use, NaN where a run alone knows it, see `is_fast` [SI]."""
+        return math.nan if self.is_fast else self._without_shock
+
+    @property
+    def is_fast(self) -> bool:
+        """Whether a shock can separate it faster than its water evaporates, which the estimate does not know."""
+        return self.question.surroundings.shock > 0 and not all(map(self.question.is_dry, self.question.humidities))
+
+    @cached_property
+    def touching(self) -> Touching:
+        """Causes of its contact, at its own size or that to use if it separates slowly."""
+        return self.life.touching(self.question.size or self._without_shock)
 
 
 def answer(
@@ -65,7 +110,7 @@ def answer(
     rows = tuple(map(question.row, worst))
     decides = min(found, key=lambda air: found[air].length(normal_score(of_once[CHOSEN])))
     stuck = None if question.stated is None else _stuck(question, list(found.values()))
-    return Estimate(question, rows, stuck, decides)
+    return Estimate(question, rows, stuck, decides, question.life)
 
 
 def in_one_air(

@@ -5,6 +5,7 @@ from typing import ClassVar
 
 from stiction.constants import REFERENCE_TEMPERATURE
 from stiction.contact.air import is_humid
+from stiction.estimate.closed.life import Surroundings
 from stiction.estimate.length import most_after
 from stiction.estimate.solids import SolidPair
 from stiction.estimate.statistics import Heights
@@ -23,6 +24,7 @@ class Asked:
     #: Whether the length is the mean over typical surfaces, not that on the stated one.
     averaged: bool = field(default=False, kw_only=True)
     solids: SolidPair = field(default=SolidPair(), kw_only=True)
+    surroundings: Surroundings = field(default=Surroundings(), kw_only=True)
     temperature: float = field(default=REFERENCE_TEMPERATURE, kw_only=True)  #: of the water [K]
     unit: ClassVar[str] = "um"  #: of its size, a length
 

@@ -21,6 +21,9 @@ from typing import Any, ClassVar
 
 from stiction.config.units import to_si
 from stiction.estimate.asked import Asked
+from stiction.estimate.closed.beams import SlenderBeam
+from stiction.estimate.closed.bending import end_stiffness
+from stiction.estimate.closed.life import BeamLife
 from stiction.estimate.length import LengthRow, Lengths, NotLearnt, falling, known_at, of_solids
 from stiction.estimate.state import OF_PATCHES, Film, PatchState
 from stiction.estimate.statistics import Heights
@@ -34,23 +37,8 @@ COORDINATES = (
     "gap over the film of water (from gap and humidity)",
     "stress over the middle in contact (from stress and thickness)",
 )
-#: Below this kL, as `stiction.beam.tension.SLACK`.
-_SLACK = 0.03
 #: Steps to a length under stress, each of which leaves at most 5/8 of the error of its logarithm.
 _STEPS = 60
-
-
-def end_stiffness(kl: float) -> tuple[float, float]:
-    """Stiffnesses F and M of half of a bridge, of the length L and under a tension of kL [-].
-
-    Examples
-    --------
-    >>> [round(value, 6) for value in (*end_stiffness(0.0), *end_stiffness(0.029))]
-    [12.0, 6.0, 12.001009, 6.000084]
-    """
-    mean = math.tanh(kl / 2) / (kl / 2) if kl else 1.0
-    force = 12 / (1 - kl**2 / 10 + 17 * kl**4 / 1680) if kl < _SLACK else kl**2 / (1 - mean)
-    return force, force * mean / 2
 
 
 @dataclass(frozen=True)
@@ -169,6 +157,12 @@ class Bridge(Asked):
     def closed(self) -> Stretched:
         """Closed form of its lengths, from those without stress."""
         return Stretched.of(self.stress, self.thickness, self.solids.beam_modulus)
+
+    @property
+    def life(self) -> BeamLife:
+        """Its life."""
+        sizes = self.thickness, self.gap, self.width, self.solids.beam_modulus
+        return BeamLife(SlenderBeam(2, *sizes, self.stress), self.surroundings)
 
     def errors(self, table: Mapping[str, Any]) -> Mapping[str, Any]:
         """Part of the table with the errors of its lengths."""

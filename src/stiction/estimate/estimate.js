@@ -245,6 +245,127 @@ function ofCantilever({thickness, gap, width, length, added, solids = POLYSILICO
   };
 }
 
+// bending: deflections with a curvature of one Legendre polynomial each
+const POLYNOMIALS = 16, POINTS = 32, SETTLED = 1e-12, GOLDEN = (Math.sqrt(5) - 1) / 2, SLACK = 0.03, BASES = {};
+function legendre(x, number) {
+  const values = [1, x];
+  for (let n = 1; n < number - 1; n++) values.push(((2 * n + 1) * x * values[n] - n * values[n - 1]) / (n + 1));
+  return values;
+}
+function integral(series) {
+  const total = [series[0], series[0], ...Array(series.length - 1).fill(0)];
+  for (let n = 1; n < series.length; n++) { total[n + 1] += series[n] / (2 * n + 1); total[n - 1] -= series[n] / (2 * n + 1); }
+  return total;
+}
+function gauss(number) {
+  return Array.from({length: number}, (_, k) => {
+    let x = Math.cos(Math.PI * (k + 0.75) / (number + 0.5)), slope;
+    for (let step = 0; step < 8; step++) {
+      const values = legendre(x, number + 1);
+      slope = number * (values[number - 1] - x * values[number]) / (1 - x * x);
+      x -= values[number] / slope;
+    }
+    return [(1 + x) / 2, 1 / ((1 - x * x) * slope ** 2)];
+  });
+}
+function basisOf(clamps) {
+  if (BASES[clamps]) return BASES[clamps];
+  const orders = Array.from({length: POLYNOMIALS}, (_, k) => clamps === 1 ? k : 2 * k + 2);
+  const slopes = orders.map((order) => integral([...Array(order).fill(0), 1])), series = slopes.map(integral), areas = series.map(integral);
+  const valuesOf = (rows, scale) => (x) => { const at = legendre(2 * x - 1, rows[POLYNOMIALS - 1].length); return rows.map((row) => dot(row, at) / scale); };
+  const deflections = valuesOf(series, 4), rule = gauss(POINTS), at = rule.map(([x]) => deflections(x / clamps));
+  const over = (one, other) => sum(one.map((x, n) => x * other[n] / (4 * (2 * n + 1))));
+  return BASES[clamps] = {at, deflections, areas: valuesOf(areas, 8), end: deflections(1 / clamps), bending: orders.map((order) => 1 / (2 * order + 1)),
+    weighted: orders.map((_, k) => rule.map(([, weight], p) => weight * at[p][k])), slope: slopes.map((row) => over(row, row)),
+    coupling: slopes.slice(1).map((row, k) => over(slopes[k], row))};
+}
+function bentBy(clamps, tension, forces) {
+  const {bending, slope, coupling} = basisOf(clamps), bent = [...forces], last = POLYNOMIALS - 1;
+  const stiffness = bending.map((each, k) => each + tension * slope[k]), couplings = coupling.map((each) => tension * each);
+  for (let k = 0; k < last; k++) {
+    const ratio = couplings[k] / stiffness[k];
+    stiffness[k + 1] -= ratio * couplings[k];
+    bent[k + 1] -= ratio * bent[k];
+  }
+  bent[last] /= stiffness[last];
+  for (let k = last - 1; k >= 0; k--) bent[k] = (bent[k] - couplings[k] * bent[k + 1]) / stiffness[k];
+  return bent;
+}
+function largest(value, upper) {
+  let low = 0.02 * upper, high = 0.98 * upper, left = high - GOLDEN * (high - low), right = low + GOLDEN * (high - low);
+  let [atLeft, atRight] = [left, right].map(value);
+  for (let k = 0; k < 26; k++) {
+    if (atLeft > atRight) { [high, right, atRight] = [right, left, atLeft]; left = high - GOLDEN * (high - low); atLeft = value(left); }
+    else { [low, left, atLeft] = [left, right, atRight]; right = low + GOLDEN * (high - low); atRight = value(right); }
+  }
+  return Math.max(atLeft, atRight);
+}
+function settled(step, start) {
+  for (let k = 0, before = start; k < 500; k++) {
+    const numbers = step(before);
+    if (Math.max(...numbers.map((x, n) => Math.abs(x - before[n]))) < SETTLED) return numbers;
+    before = numbers;
+  }
+  throw new Error("the deflection or length of a beam does not settle");
+}
+const settledLength = (step, start) => Math.exp(settled(([logarithm]) => [Math.log(step(Math.exp(logarithm)))], [Math.log(start)])[0]);
+
+// life: lengths of beams that dry, and shock
+const HALF_SINE = 1.7685, OF_CANTILEVER = 1.0290535885833705, DENSITY = 2330, MODES = 24;
+const tensionAt = ({stress = 0, modulus, thickness}, length) => 12 * stress / modulus * (length / thickness) ** 2;
+const scaleOf = ({modulus, thickness, gap}, liquid) => modulus * thickness ** 3 * gap ** 2 / (24 * liquid);
+function standingEach(beam, liquid) {
+  const {clamps, gap, width} = beam, scale = scaleOf(beam, liquid), unit = gap / 2, {at, end, weighted} = basisOf(clamps);
+  const along = (u) => { const ratio = width / (gap * (1 - u)); return (ratio + Math.hypot(ratio, 2)) * unit / width; };
+  const lengthOf = (logarithm) => (Math.exp(logarithm) * scale) ** 0.25;
+  const balance = (deflection) => lengthOf(settled(([logarithm, ...factors]) => {
+    const length = lengthOf(logarithm), loads = at.map((row) => along(dot(row, factors))), atEnd = clamps === 1 ? unit / length : 0;
+    const bent = bentBy(clamps, tensionAt(beam, length), weighted.map((row, k) => dot(row, loads) + atEnd * end[k])), factor = deflection / dot(end, bent);
+    return [Math.log(factor), ...bent.map((each) => factor * each)];
+  }, Array(1 + POLYNOMIALS).fill(0))[0]);
+  return largest(balance, 1);
+}
+function standing(beam, liquid) {
+  const {clamps} = beam, scale = scaleOf(beam, liquid), {areas, deflections} = basisOf(clamps);
+  return settledLength((length) => {
+    const tension = tensionAt(beam, length);
+    const pull = (begin) => {
+      const before = areas(begin), forces = areas(clamps === 1 ? 1 : 1 - begin).map((area, k) => area - before[k]);
+      return dot(bentBy(clamps, tension, forces), deflections(begin));
+    };
+    return (scale / (4 * largest(pull, 1 / clamps))) ** 0.25;
+  }, scale ** 0.25);
+}
+function released(beam, liquid) {
+  const {clamps, modulus, thickness, gap} = beam;
+  if (clamps === 1) return (3 / 16 * modulus * thickness ** 3 * gap ** 2 / liquid) ** 0.25;
+  const pull = Math.sqrt(48 * liquid / (modulus * thickness ** 3)) / gap, decay = Math.sqrt(tensionAt(beam, 1));
+  return 2 * settledLength((crack) => Math.sqrt(endStiffness(decay * crack)[1] / pull), Math.sqrt(6 / pull));
+}
+function byMode(number, tension) {
+  let low = (2 * number - 1) * Math.PI, high = 2 * number * Math.PI;
+  const other = (a) => Math.sqrt(a * a + tension), slope = (a) => a * Math.tan(a / 2) + other(a) * Math.tanh(other(a) / 2);
+  for (let k = 0; k < 60; k++) {
+    const middle = 0.5 * (low + high);
+    if (slope(middle) < 0) low = middle; else high = middle;
+  }
+  const a = 0.5 * (low + high), b = other(a), byA = Math.tan(a / 2) / a, byB = Math.tanh(b / 2) / b;
+  const square = 1 / (2 * Math.cos(a / 2) ** 2) + byA + 1 / (2 * Math.cosh(b / 2) ** 2) + byB;
+  return (1 / Math.cos(a / 2) - 1 / Math.cosh(b / 2)) * 2 * (byA - byB) / ((a * b) ** 2 * square);
+}
+function halfSineShock(beam, length) {
+  const {clamps, modulus, thickness, gap} = beam, tension = tensionAt(beam, length), k = Math.sqrt(tension);
+  const byUnit = clamps === 1 ? 1 / 8 : k < SLACK ? 1 / 384 - k ** 2 / 15360 : (1 / 8 - Math.tanh(k / 4) / (2 * k)) / k ** 2;
+  const modes = Array.from({length: MODES}, (_, n) => clamps === 1 ? 0 : Math.abs(byMode(n + 1, tension)));
+  const overshoot = clamps === 1 ? OF_CANTILEVER : sum(modes) / byUnit;
+  return modulus * thickness ** 2 * gap / (12 * DENSITY * length ** 4 * byUnit) / (HALF_SINE * overshoot);
+}
+function lifeOf({stress, thickness, gap, width, length, liquid, solids = POLYSILICON}) {
+  const beam = {clamps: stress === undefined ? 1 : 2, stress, thickness, gap, width, modulus: solids.beamModulus};
+  const dried = liquid ? [standingEach, standing, released].map((of) => of(beam, liquid)) : null;
+  return {dried, shock: halfSineShock(beam, length)};
+}
+
 // normal distribution: continued fraction and series of erfc
 function fractionOf(score) {
   const x = Math.abs(score) / Math.SQRT2, square = x * x;
@@ -315,7 +436,7 @@ function answer(question, table) {
     const length = (one) => Math.exp(logarithmOf(one, score, question.averaged));
     return {fraction, ...row({length: closed.length(Math.min(...airs.map(length))), intervals: ends})};
   });
-  return {rows, stuck: stated ? stuck(question, airs, closed.bare(stated)) : null};
+  return {rows, stuck: stated ? stuck(question, airs, closed.bare(stated)) : null, life: question.sides ? null : lifeOf(question)};
 }
 const logarithmOf = (one, score, averaged) => averaged ? centre(one, score)[0] : Math.log(lengthAt(one.stated, score));
 function endsOf(one, score, confidence) {

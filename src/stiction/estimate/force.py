@@ -16,6 +16,7 @@ from typing import Any, ClassVar
 from stiction.config.units import to_si
 from stiction.estimate import dry
 from stiction.estimate.asked import Asked
+from stiction.estimate.closed.life import StopperLife
 from stiction.estimate.length import LengthRow, Lengths, NotLearnt, falling, known_at, of_solids
 from stiction.estimate.state import OF_PATCHES, Film, PatchState
 from stiction.estimate.statistics import Heights
@@ -79,6 +80,11 @@ class Stopper(Asked):
     def closed(self) -> Driven:
         """Closed form of its voltage, which it has not."""
         return Driven(0.0)
+
+    @property
+    def life(self) -> StopperLife:
+        """Its life."""
+        return StopperLife(self.surroundings)
 
     def errors(self, table: Mapping[str, Any]) -> Mapping[str, Any]:
         """Part of the table with the errors of its forces."""

@@ -24,6 +24,7 @@ const INPUTS = [
   ["touchdowns", "touchdowns", 1, 1000, 1, 1],
   ["voltage_V", "voltage in contact [V]", 0, 50, 0.5, 0],
   ["dielectric_nm", "dielectric, thickness over permittivity [nm]", 10, 1000, 10, 100],
+  ["tension_mN_per_m", "surface tension of a liquid that dries, 0 without one [mN/m]", 0, 75, 0.1, 0],
 ];
 const OF_MATERIAL = [
   ["modulus_GPa", "Young's modulus [GPa]", 60, 400, 2, 164],
@@ -33,8 +34,8 @@ const OF_MATERIAL = [
   ["water_zJ", "Hamaker constant through water [zJ]", 2.5, 260, 2.5, 97.5],
   ["dry_zJ", "Hamaker constant through dry air [zJ]", 60, 480, 0.5, 186.5],
 ];
-const OWN = {[CANTILEVER]: ["thickness_um", "gap_um", "width_um", "length_um", "voltage_V", "dielectric_nm"],
-  [BRIDGE]: ["thickness_um", "below_um", "width_um", "length_um", "stress_MPa"], [STOPPER]: ["side_um", "other_um", "force_uN"]};
+const OWN = {[CANTILEVER]: ["thickness_um", "gap_um", "width_um", "length_um", "voltage_V", "dielectric_nm", "tension_mN_per_m"],
+  [BRIDGE]: ["thickness_um", "below_um", "width_um", "length_um", "stress_MPa", "tension_mN_per_m"], [STOPPER]: ["side_um", "other_um", "force_uN"]};
 const DRY = "dry", DRIEST = 0.345, airOf = (value) => value("humidity") < DRIEST ? DRY : value("humidity");
 const PAIR = ["known_skewness", "known_kurtosis"]; // a file states both or neither
 const OPEN = ["hurst", "corner_rad_per_um", "cutoff_rad_per_um", "skewness", "kurtosis"], byId = (id) => document.getElementById(id);
@@ -64,7 +65,7 @@ function questionOf({own, kind, like, substrate, value, open}) {
     humidities: [airOf(value) === DRY ? 0 : airOf(value)], touchdowns: value("touchdowns")};
   Object.assign(asked, {solids: solidsOf(value), temperature: value("temperature_K")});
   if (kind === STOPPER) return {...asked, sides: ["side_um", "other_um"].map((key) => value(key) * 1e-6), force: value("force_uN") * 1e-6};
-  const beam = {...asked, thickness: value("thickness_um") * 1e-6, width: value("width_um") * 1e-6, length: value("length_um") * 1e-6};
+  const beam = {...asked, thickness: value("thickness_um") * 1e-6, width: value("width_um") * 1e-6, length: value("length_um") * 1e-6, liquid: value("tension_mN_per_m") * 1e-3};
   if (kind === BRIDGE) return {...beam, gap: value("below_um") * 1e-6, stress: value("stress_MPa") * 1e6};
   const gap = value("gap_um") * 1e-6, energy = energyOf(value("voltage_V"), value("dielectric_nm") * 1e-9, gap);
   return {...beam, added: energy, gap};
@@ -78,6 +79,7 @@ const RAREST = 1e-6, NEARLY_ALL = 0.99; // fractions that are shown
 const WORDS = {[CANTILEVER]: ["length", "µm", "length_um"], [BRIDGE]: ["length", "µm", "length_um"], [STOPPER]: ["force", "µN", "force_uN"]};
 const grouped = (number) => number < 10000 ? `${number}` : `${number}`.replace(/\B(?=(\d{3})+$)/g, "\u00a0");
 const micro = (size) => Number((size * 1e6).toPrecision(3)).toString();
+const outward = (ends) => ends.map((end, side) => bound(end * 1e6, side === 1).toString());
 function percent(part, touchdowns) {
   if (part < RAREST) return `less than ${(100 * RAREST).toFixed(4)} %`;
   return `${part >= after(SCORES[0], touchdowns) ? "at least " : ""}${Number((100 * Math.min(part, NEARLY_ALL)).toPrecision(2))} %`;
@@ -99,21 +101,41 @@ function show() {
 function write(found, {kind, value}) {
   const [name, symbol, key] = WORDS[kind];
   const row = ({fraction, size, intervals}) => `<tr><th scope="row">1 in ${grouped(Math.round(1 / fraction))}</th><td>${micro(size)}</td>` +
-    ["90", "95"].map((key) => `<td>${intervals[key].map(micro).join(" to ")}</td>`).join("") + "</tr>";
+    ["90", "95"].map((key) => `<td>${outward(intervals[key]).join(" to ")}</td>`).join("") + "</tr>";
   const caption = `<caption>${name === "length" ? "Length" : "Force"} at which a fraction sticks [${symbol}]</caption>`;
   byId("table").innerHTML = `${caption}<thead><tr><th scope="col">stuck</th><th scope="col">${name}</th><th scope="col">90 %</th>` +
     `<th scope="col">95 %</th></tr></thead><tbody>${found.rows.map(row).join("")}</tbody>`;
   byId("said").className = "said";
-  const [least, most] = found.rows[2].intervals["90"].map(micro), safe = kind === STOPPER ? `at least ${most}` : `at most ${least}`;
+  const dried = found.life && found.life.dried, lowest = found.rows[2].intervals["90"][0], mustDry = dried && dried[0] < lowest;
+  const [least, most] = outward(found.rows[2].intervals["90"]);
+  const safe = kind === STOPPER ? `at least ${most}` : mustDry ? `at most ${bound(dried[0] * 1e6)}, or it can collapse while ${LIQUID} dries` : `at most ${least}`;
   byId("said").textContent = `1 in 1000 sticks between ${least} and ${most} ${symbol} (90 %): use ${safe}.`;
   const [middle, low, high] = found.stuck.map((part) => percent(part, value("touchdowns")));
   byId("stuck").textContent = `At ${value(key)} ${symbol}, ${middle} stick (95 %: ${low} to ${high}).`;
+  byId("life").textContent = found.life ? livesOf(found.life, value(key), kind).join("\n") : "";
+}
+const LIQUID = "liquid", GRAVITY = 9.80665, FATES = ["stands", "may collapse", "collapses"];
+function bound(number, up = false) { // to three digits, not beyond it, of nine that do not show how it was computed
+  if (!Number.isFinite(number)) return number;
+  const [digits, power] = number.toExponential(8).split("e");
+  return Number(`${Math[up ? "ceil" : "floor"](Number(digits.replace(".", "")) / 1e6)}e${power - 2}`);
+}
+function livesOf({dried, shock}, length, kind) {
+  const touches = `At ${length} µm it does not touch below a half-sine shock of ${grouped(bound(shock / GRAVITY))} g.`;
+  if (!dried) return [touches];
+  const [stands, collapses, free] = dried.map((size) => bound(size * 1e6)), fate = dried.slice(0, 2).filter((size) => length * 1e-6 > size).length;
+  return [`While ${LIQUID} dries, beams stand up to ${stands} µm and collapse beyond ${collapses} µm; ` +
+    `after a collapse they stay down if they are longer than ${free} µm${kind === BRIDGE ? "; shorter ones may, too" : ""}.`, `At ${length} µm it ${FATES[fate]} while ${LIQUID} dries.`, touches];
 }
 function refuse(reason) {
   byId("said").className = "said refused";
   byId("said").textContent = `Not known at once: ${reason.message}. A run computes it.`;
   byId("table").innerHTML = "<caption>No number</caption>";
-  byId("stuck").textContent = "";
+  byId("stuck").textContent = byId("life").textContent = "";
+}
+function liquidsOf(kind, value) {
+  const tension = value("tension_mN_per_m");
+  return kind !== STOPPER && tension ? `liquids: {${LIQUID}: {surface_tension_mN_per_m: ${tension}}}\n` : "";
 }
 function yamlOf({own, kind, like, substrate, value, open}) {
   const others = materialOf(value), named = others ? ", material: Upper" : "";
@@ -122,7 +144,7 @@ function yamlOf({own, kind, like, substrate, value, open}) {
   const opposite = others ? `  ${substrate}: {material: Lower}\n` : "";
   return `run: {pairs: [mine], studies: []}\n${waterOf(value)}${others}surfaces:\n  Mine: {${surface}}\n${opposite}pairs:\n` +
     `  mine: {beam: Mine, substrate: ${substrate}, gap_um: ${value(kind === BRIDGE ? "below_um" : "gap_um")}, humidities: [${airOf(value)}]}\n` +
-    `devices:\n  ${NAMES[kind]}: {kind: ${kind}, pair: mine, ${SIZES[kind](value)}, ${air}}\n`;
+    `${liquidsOf(kind, value)}devices:\n  ${NAMES[kind]}: {kind: ${kind}, pair: mine, ${SIZES[kind](value)}, ${air}}\n`;
 }
 function materialOf(value) {
   if (OF_MATERIAL.every(([key, , , , , start]) => key === "temperature_K" || value(key) === start)) return "";

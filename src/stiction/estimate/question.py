@@ -12,6 +12,8 @@ from stiction.contact.air import DRY, DRY_AIR, is_possible
 from stiction.estimate import dry
 from stiction.estimate.asked import Asked
 from stiction.estimate.bridge import Bridge
+from stiction.estimate.closed.beams import SlenderBeam
+from stiction.estimate.closed.life import BeamLife, Surroundings
 from stiction.estimate.force import Stopper
 from stiction.estimate.length import Impossible, LengthRow, Lengths, NotLearnt, lengths
 from stiction.estimate.solids import SolidPair
@@ -28,11 +30,11 @@ OF_SURFACES = ("rms_nm", "like", "hurst", "corner_rad_per_um", "cutoff_rad_per_u
 OF_SURFACES += ("unknown", "uncertainty", "psd", "published_psd", "mean_summit_radius_um", "summit_density_per_um2")
 OF_PAIRS = ("beam", "substrate", "gap_um", "humidities", "attraction", "coarser_mesh")
 OF_DEVICES = ("kind", "pair", "length_um", "thickness_um", "gap_um", "width_um", "humidities", "touchdowns")
-OF_DEVICES += OF_VOLTAGES
+OF_DEVICES += ("shock_g", *OF_VOLTAGES)
 OF_BRIDGES = ("kind", "pair", "length_um", "thickness_um", "gap_um", "width_um", "residual_stress_MPa")
-OF_BRIDGES += ("humidities", "touchdowns")
+OF_BRIDGES += ("humidities", "touchdowns", "shock_g")
 OF_STOPPERS = ("kind", "pair", "contact_um", "restoring_force_uN", "stiffness_N_per_m", "gap_um", "mass_ng")
-OF_STOPPERS += ("humidities", "touchdowns", "electrode")
+OF_STOPPERS += ("humidities", "touchdowns", "electrode", "shock_g")
 #: Keys of a material, of which the last two change no length or force.
 OF_MATERIALS = ("young_modulus_GPa", "poisson_ratio", "hamaker_constant_zJ", "contact_angle_deg")
 OF_MATERIALS += ("hardness_GPa", "density_kg_per_m3")
@@ -55,6 +57,7 @@ OF_DEFAULTS = {"attraction": {"reach": "all"}}
 #: Keys of numbers that must be positive.
 POSITIVE = ("rms_nm", "hurst", "corner_rad_per_um", "cutoff_rad_per_um", "kurtosis", "thickness_um", "gap_um")
 POSITIVE += ("width_um", "length_um", "contact_um", "restoring_force_uN", "thickness_nm", "permittivity", "touchdowns")
+POSITIVE += ("mass_ng", "stiffness_N_per_m", "area_um2", "surface_tension_mN_per_m")
 
 
 class Ends(NamedTuple):
@@ -86,6 +89,7 @@ ENDS = {
     "young_modulus_GPa": Ends(0, 2000, "above"),
     "poisson_ratio": Ends(-1, 0.5, "above", "below"),
     "contact_angle_deg": Ends(0, 180),
+    "density_kg_per_m3": Ends(50, 30_000),
     "temperature_K": Ends(273, 373),
 }
 #: The same of a Hamaker constant through any medium.
@@ -122,6 +126,12 @@ class Question(Asked):
     def closed(self) -> Driven:
         """Closed form of its lengths at its voltage."""
         return Driven(drive_of(self.added, self._stiffness, self.gap))
+
+    @property
+    def life(self) -> BeamLife:
+        """Its life."""
+        sizes = self.thickness, self.gap, self.width, self.solids.beam_modulus
+        return BeamLife(SlenderBeam(1, *sizes), self.surroundings)
 
     def errors(self, table: Mapping[str, Any]) -> Mapping[str, Any]:
         """Part of the table with the errors of its lengths."""
@@ -227,7 +237,7 @@ def refuse_impossible(numbers: Mapping[str, Any], names: Mapping[str, str] | Non
         value = numbers[key]
         if not all(0 < each < math.inf for each in (value if isinstance(value, Sequence) else [value])):
             raise Impossible(f"{names[key]} must be above 0, got {value}")
-    _refuse_compression(numbers, names)
+    _refuse_negative(numbers, names)
     for less, more in [pair for pair in _IN_ORDER if numbers.keys() >= set(pair)]:
         if numbers[more] <= numbers[less]:
             got = f"got {numbers[more]}, {numbers[less]}"
@@ -247,10 +257,11 @@ def refuse_beyond(numbers: Mapping[str, Any], section: str, ends: Mapping[str, E
             raise Impossible(f"{section}.{key} {refusal}")
 
 
-def _refuse_compression(numbers, names):
-    """Refuse a bridge that may buckle."""
-    if not 0 <= (stress := numbers.get("residual_stress_MPa", 0)) < math.inf:
-        raise Impossible(f"{names['residual_stress_MPa']} must be 0 or above, got {stress}")
+def _refuse_negative(numbers, names):
+    """Refuse a bridge that may buckle, and a shock without a size."""
+    for key in ("residual_stress_MPa", "shock_g"):
+        if not 0 <= (value := numbers.get(key, 0)) < math.inf:
+            raise Impossible(f"{names[key]} must be 0 or above, got {value}")
 
 
 def questions(
@@ -291,14 +302,26 @@ def _question(name, device, content, table):
     pair, library = (table["pairs"] | content.get("pairs", {}))[device["pair"]], table["library"]
     if others := [key for key in pair if key not in OF_PAIRS]:
         raise NotLearnt(f"{others[0]} of a pair was not learnt")
-    refuse_impossible(device | device.get("dielectric", {}))
+    _refuse_life(device, content)
     surfaces = library | {key: library.get(key, {}) | entry for key, entry in content.get("surfaces", {}).items()}
     entries = [dict(surfaces[pair[side]]) for side in ("beam", "substrate")]
-    solids = solids_of([entry.pop("material", None) for entry in entries], content)
+    names = [entry.pop("material", None) for entry in entries]
+    solids, material = solids_of(names, content), materials_of(names, content).get(names[0], {})
+    surroundings = Surroundings.of_device(device, content, material)
     for side, entry in zip(("beam", "substrate"), entries, strict=True):
         refuse_beyond(entry, f"surfaces.{pair[side]}")
     sides = [surface(entry, library) for entry in entries]
-    return make(name, device, sides, left_out=left_out, solids=solids, **temperature_of(content))
+    more = {"left_out": left_out, "solids": solids, "surroundings": surroundings} | temperature_of(content)
+    return make(name, device, sides, **more)
+
+
+def _refuse_life(device, content):
+    """Refuse impossible numbers of a device, of its life, and of liquids."""
+    refuse_impossible(device | device.get("dielectric", {}))
+    refuse_impossible(device.get("electrode", {}))
+    for name, liquid in content.get("liquids", {}).items():
+        refuse_impossible(liquid)
+        refuse_beyond(liquid, f"liquids.{name}")
 
 
 def temperature_of(content: Mapping[str, Any]) -> dict[str, float]:
@@ -314,6 +337,17 @@ def temperature_of(content: Mapping[str, Any]) -> dict[str, float]:
     return {"temperature": float(water["temperature_K"])} if "temperature_K" in water else {}
 
 
+def materials_of(names: Sequence[str | None], content: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Materials of a file, with those by name that it does not state itself."""
+    materials = content.get("materials", {})
+    if not any(name and (name not in materials or "like" in materials[name]) for name in names):
+        return materials
+    from stiction.config.materials import with_named  # imports NumPy
+
+    used = {str(k): {"material": name} for k, name in enumerate(names)}
+    return with_named({"surfaces": used, "materials": materials})["materials"]
+
+
 def solids_of(names: Sequence[str | None], content: Mapping[str, Any]) -> SolidPair:
     """SolidPair of materials by name, or of section solid where a surface has none.
 
@@ -322,12 +356,7 @@ def solids_of(names: Sequence[str | None], content: Mapping[str, Any]) -> SolidP
     NotLearnt
         If something else of a material matters.
     """
-    solid, materials = content.get("solid", {}), content.get("materials", {})
-    if any(name and (name not in materials or "like" in materials[name]) for name in names):
-        from stiction.config.materials import with_named  # imports NumPy
-
-        used = {str(k): {"material": name} for k, name in enumerate(names)}
-        materials = with_named({"surfaces": used, "materials": materials})["materials"]
+    solid, materials = content.get("solid", {}), materials_of(names, content)
     refuse_beyond(solid, "solid")
     return SolidPair.of(*(solid | _material(name, materials) for name in names))
 

@@ -21,10 +21,14 @@ KEYS = ("voltage_V", "offset_V", "dielectric")
 _STEPS = 8
 
 
+def potential_of(device: Mapping) -> float:
+    """Largest difference of potential of a device [V]."""
+    return sum(abs(device.get(key, 0.0)) for key in KEYS[:2])
+
+
 def energy_of(device: Mapping, gap: float) -> float:
     """Energy Γ_V that the voltage of a device adds over its gap [m] [J m⁻²], zero without one."""
-    potential = sum(abs(device.get(key, 0.0)) for key in KEYS[:2])
-    if not potential:
+    if not (potential := potential_of(device)):
         return 0.0
     dielectric = device["dielectric"]
     distance = to_si(dielectric["thickness_nm"], "nm") / dielectric["permittivity"]

@@ -9,9 +9,10 @@ from matplotlib.figure import Figure
 from stiction.config.merging import values
 from stiction.contact.air import Air
 from stiction.plan.stage import File
-from stiction.report.format import fraction_with_band, lower_to, with_error
+from stiction.report.format import fraction_with_band, with_error
 from stiction.report.style import DOUBLE, SINGLE, dashes, figure_stage, letter, marker, panels, styled
 from stiction.report.table import HUMIDITY, Columns, Table, table_stage
+from stiction.rounding import lower_to
 
 
 class ComparedPart(NamedTuple):

@@ -1,22 +1,21 @@
 """Units of tables and axes, and numbers as text: with a standard error, as a deviation, or alone."""
 
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from decimal import ROUND_FLOOR, Decimal
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from decimal import Decimal
 from typing import Any
 
 import numpy as np
 
-from stiction.answer.sought import DIGITS, Sought, as_computed, rounded
+from stiction.answer.sought import DIGITS, Sought
 from stiction.config.mission.conditions import humidity_of
 from stiction.contact.air import DRY_AIR, Air, has_dry, humid
+from stiction.rounding import MISSING, bounding, number
 
 #: Units in SI, for tables: the stored number is a quantity divided by its unit; a product may differ in the last bit.
 NM, UM, NN, UN, PER_UM2 = 1e-9, 1e-6, 1e-9, 1e-6, 1e12
 #: Factors from SI, for axes and sentences, mJ m⁻² among them; exact in single precision, in which most data are stored.
 TO_NM, TO_UM, TO_UN, TO_MPA, TO_GPA, TO_MJ = 1e9, 1e6, 1e6, 1e-6, 1e-9, 1e3
 
-#: Text of a missing number.
-MISSING = "–"
 #: Part of a value below which its standard error is rounding.
 _ROUNDING = np.finfo(float).eps
 #: Fraction beyond which digits of the rest are shown.
@@ -34,35 +33,6 @@ def percent(value: float, reference: float) -> float:
     return 100 * (value / reference - 1) if reference else np.nan
 
 
-def number(value: float, form: str) -> str:
-    """Text of a number in a format such as ``+.1f``, with – for NaN and zero without a minus sign.
-
-    Examples
-    --------
-    >>> number(-0.04, "+.1f"), number(-1.25, ".3g"), number(float("nan"), "g")
-    ('+0.0', '-1.25', '–')
-    """
-    if np.isnan(value):
-        return MISSING
-    text = format(value, form)
-    return text if float(text) else format(0.0, form)
-
-
-def bounding(value: float, digits: int, up: bool) -> str:
-    """Text of a bound with some significant digits, never below it if ``up``, else never above.
-
-    Examples
-    --------
-    >>> bounding(0.0994, 2, up=True), bounding(200.66, 3, up=False), bounding(1234.5, 3, up=True)
-    ('0.1', '200', '1240')
-    >>> bounding(250 * (1 + 1e-15), 3, up=True), bounding(float("nan"), 3, up=True)
-    ('250', '–')
-    """
-    if not np.isfinite(value) or not value:
-        return number(value, "g")
-    return f"{rounded(value, digits, up):f}"
-
-
 def safe_size(size: float, sought: Sought) -> str:
     """Size to build or a simulated limit with its unit, rounded to its safe side: lengths down, forces up.
 
@@ -73,24 +43,6 @@ def safe_size(size: float, sought: Sought) -> str:
     ('200 µm', '12.4 µN')
     """
     return f"{bounding(size / sought.scale, DIGITS, sought.more_is_better)} {sought.shown}"
-
-
-def lower_to(decimals: int) -> Callable[[float], str]:
-    """Text of a lower bound with some decimals, never above it.
-
-    Examples
-    --------
-    >>> lower_to(1)(219.39), lower_to(1)(219.4), lower_to(1)(float("nan"))
-    ('219.3', '219.4', '–')
-    """
-    step = Decimal(1).scaleb(-decimals)
-
-    def text(value):
-        if not np.isfinite(value):
-            return number(value, "g")
-        return str(as_computed(value).quantize(step, ROUND_FLOOR))
-
-    return text
 
 
 def humidity_text(value: float) -> str:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from typing import Any, NamedTuple
 
+from stiction.command.at_once import life
 from stiction.command.output_streams import say
 from stiction.config.units import from_si
 from stiction.contact.air import DRY, DRY_AIR, Air
@@ -27,6 +28,7 @@ from stiction.estimate.question import (
     temperature_of,
 )
 from stiction.estimate.table import content, known
+from stiction.rounding import bounding
 
 #: Options of a device on a described surface: key in a file, metavar, help, default.
 OPTIONS = {
@@ -281,22 +283,27 @@ def shown(estimate: Estimate) -> Iterator[str]:
     yield f"{asked.name}: estimate {where}; stated inputs count as exact{left_open}"
     yield f"  stuck            {f'{name} [{symbol}]':<15}90 %            95 %"
     for row in estimate.rows:
-        both = ([_number(end, asked) for end in ends] for ends in row.intervals.values())
+        both = (_outward(ends, asked) for ends in row.intervals.values())
         ends = "    ".join(f"{low:>5} to {high:<5}" for low, high in both)
         yield f"  1 in {1 / row.fraction:<10.0f}  {_number(row.size, asked):>8}     {ends}"
     if estimate.stuck is not None:
         value, low, high = (_percent(fraction, asked.most) for fraction in estimate.stuck)
-        yield f"  At {_number(asked.size, asked)} {symbol}, {value} stick (95 %: {low} to {high})."
+        yield f"  At {life.as_stated(asked.size, asked.unit)} {symbol}, {value} stick (95 %: {low} to {high})."
     yield f"  {chosen(estimate)}."
+    yield from (f"  {sentence}" for sentence in life.sentences(estimate, symbol))
 
 
 def chosen(estimate: Estimate, subject: str = "") -> str:
     """Interval of the size for 1 in 1000, and the end to use."""
-    (low, high), asked = estimate.chosen.intervals["90"], estimate.question
-    least, most = _number(low, asked), _number(high, asked)
-    safe = f"at least {most}" if isinstance(asked, Stopper) else f"at most {least}"
-    symbol = _WORDS[asked.unit][1]
-    return f"1 in {1 / CHOSEN:.0f}{subject} sticks between {least} and {most} {symbol} (90 %): use {safe}"
+    asked = estimate.question
+    least, most = _outward(estimate.chosen.intervals["90"], asked)
+    learnt = f"1 in {1 / CHOSEN:.0f}{subject} sticks between {least} and {most} {_WORDS[asked.unit][1]} (90 %)"
+    if estimate.is_fast:
+        return f"{learnt} if it separates slowly: menisci hold more in a shock, and a run says what to use"
+    if estimate.drying:
+        longest = life.bound(estimate.use, asked.unit)
+        return f"{learnt}: use at most {longest}, or it can collapse while {estimate.drying} dries"
+    return f"{learnt}: use {f'at least {most}' if estimate.is_force else f'at most {least}'}"
 
 
 #: Largest fraction that is shown.
@@ -308,6 +315,11 @@ def _percent(fraction, most):
     if fraction < FRACTIONS[-1]:
         return f"less than {100 * FRACTIONS[-1]:.4f} %"
     return f"{'at least ' * (fraction >= most)}{float(f'{100 * min(fraction, _NEARLY_ALL):.2g}'):g} %"
+
+
+def _outward(ends: Sequence[float], question: Question | Stopper | Bridge) -> list[str]:
+    """Ends of an interval in the unit of a question, with three digits, and not within it."""
+    return [bounding(from_si(end, question.unit), 3, up) for end, up in zip(ends, (False, True), strict=True)]
 
 
 def _number(size: float, question: Question | Stopper | Bridge) -> str:

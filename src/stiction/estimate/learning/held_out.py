@@ -1,6 +1,6 @@
 """Table of the errors of the estimate: on drawn surfaces that were not learnt, and beside runs of devices.
 
-python -m stiction.estimate.learning.held_out FOLDER SAFE_LENGTHS.csv STOPPERS.csv DEVICES.yaml
+python -m stiction.estimate.learning.held_out FOLDER [SAFE_LENGTHS.csv STOPPERS.csv DEVICES.yaml ...]
 """
 
 import csv
@@ -9,12 +9,14 @@ from collections.abc import Iterator
 from dataclasses import replace
 from itertools import chain
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from stiction.config.reading import read
 from stiction.config.units import from_si
-from stiction.estimate.answer import CONFIDENCES, OF_OTHER_SOLIDS, answer, difficulty
+from stiction.contact.air import Air
+from stiction.estimate.answer import CHOSEN, CONFIDENCES, OF_OTHER_SOLIDS, answer, difficulty
 from stiction.estimate.learning import dry_rows
 from stiction.estimate.learning.design import SurfaceLaw
 from stiction.estimate.learning.dry import CONSTANTS, DryEffort
@@ -24,6 +26,7 @@ from stiction.estimate.learning.other_solids.points import RANGES, TEMPERATURES
 from stiction.estimate.length import NotLearnt
 from stiction.estimate.question import questions
 from stiction.estimate.table import Surrogate, content, known
+from stiction.rounding import bounding
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.opening import EITHER, MIDDLE
 
@@ -48,7 +51,8 @@ _OF_LENGTHS = (
     "refuses all else. Below are lengths for 1 in 1000, of polysilicon at 300 K, beside those of drawn surfaces that "
     "it has not learnt, with tips changed by full contact as in a run, on strips of at most 12 µm. The error is the "
     "logarithm of the latter over the estimate, negative on the unsafe side. Half: median of half of the interval of "
-    "90 %. In brackets: 95 % range of the share inside."
+    "90 %. In brackets: 95 % range of the share inside. Drying, shock and pull-in are closed forms of "
+    "[the life](../life.md). Where water condenses, the estimate of a device with `shock_g` leaves the size to a run."
 )
 _OF_BRIDGES = (
     "The same for bridges, beside finite elements of their middle on force laws as of a run. Errors and halves are of "
@@ -146,11 +150,29 @@ def of_runs(lengths: str, forces: str, devices: str) -> Iterator[str]:
         for name, question in questions(read(devices), content()).items()
         if not isinstance(question, NotLearnt)
     }
-    yield "Beside the run of [examples/devices.yaml](../../examples/devices.yaml): lengths by beam, tip or middle, and"
+    yield f"Beside the run of [{devices}](../../{devices}): lengths by beam, tip or middle, and"
     yield "of stoppers the simulated limit with 95 % confidence, which is above the estimate of the run:"
     yield ""
     yield "| run | RH | 1 in | size of the run | estimate | 90 % |"
     yield "|---|---|---|---|---|---|"
+    rows = list(_rows(lengths, forces, asked))
+    yield from (row.line for row in rows)
+    chosen = [row.is_inside for row in rows if row.share == CHOSEN]
+    yield ""
+    yield f"At 1 in {1 / CHOSEN:.0f}, {sum(chosen)} of {len(chosen)} sizes of the run are inside the interval of 90 %."
+    yield ""
+
+
+class RowBesideRun(NamedTuple):
+    """Row of the table beside a run."""
+
+    line: str
+    share: float
+    is_inside: bool  #: whether the size of the run is in the interval of 90 %
+
+
+def _rows(lengths, forces, asked):
+    """Rows of lengths and forces of a run, in files, by the questions about their devices."""
     for row in _read(lengths):
         if row["device"] in asked and row["held_by"] in _HELD_BY:
             yield _beside(row, float(row["share"]), float(row["estimate_um"]), asked[row["device"]])
@@ -174,22 +196,21 @@ def _read(path):
 
 
 def _beside(row, share, of_run, question):
-    """Row of one length or force of a run."""
-    once = replace(question, touchdowns=1, humidities=(float(row["relative_humidity"]),))
-    row_of_estimate = next(
-        estimated for estimated in answer(once, *known()).rows if np.isclose(estimated.fraction, share)
-    )
-    shown, low, high = (
-        f"{from_si(number, question.unit):.3g}" for number in (row_of_estimate.size, *row_of_estimate.intervals["90"])
-    )
-    cells = [
-        row["device"],
-        row["relative_humidity"],
-        f"{1 / share:.0f}",
-        f"{of_run:.3g} {_WORDS[question.unit]}",
-        shown,
-    ]
-    return f"| {' | '.join([*cells, f'{low} to {high}'])} |"
+    """Row of one length or force of a run, in the unit of the question."""
+    humidity = float(row["relative_humidity"])
+    once = replace(question, touchdowns=1, humidities=(humidity,))
+    estimated = next(each for each in answer(once, *known()).rows if np.isclose(each.fraction, share))
+    low, high = (from_si(end, question.unit) for end in estimated.intervals["90"])
+    size = _three_digits(from_si(estimated.size, question.unit))
+    cells = [row["device"], f"{Air(humidity).name}", f"{1 / share:.0f}"]
+    cells += [f"{_three_digits(of_run)} {_WORDS[question.unit]}", size]
+    ends = f"{bounding(low, 3, up=False)} to {bounding(high, 3, up=True)}"
+    return RowBesideRun(f"| {' | '.join([*cells, ends])} |", share, low <= of_run <= high)
+
+
+def _three_digits(number):
+    """Number with three digits, and without an exponent."""
+    return f"{float(f'{number:.3g}'):g}"
 
 
 def _row(words, surfaces, of_part):
@@ -211,4 +232,5 @@ def _inside(is_inside):
 
 if __name__ == "__main__":
     folder, *files = sys.argv[1:]
-    sys.stdout.writelines(f"{line}\n" for line in chain(lines(Path(folder)), of_runs(*files)))
+    beside = chain.from_iterable(of_runs(*files[k : k + 3]) for k in range(0, len(files), 3))
+    sys.stdout.writelines(f"{line}\n" for line in chain(lines(Path(folder)), beside))

@@ -9,7 +9,7 @@ import xarray as xr
 
 from stiction.config.units import from_si
 from stiction.devices.risk import one_in
-from stiction.report.format import MISSING, airs, with_error
+from stiction.report.format import MISSING, airs, bounding, with_error
 from stiction.report.page import Page, Section
 from stiction.report.table import DEVICE, HUMIDITY, Columns, Line, Table, table_stage
 from stiction.stages.at_once.beside import CONFIDENCE, FORCES, LENGTHS, estimated, file_of
@@ -47,8 +47,8 @@ class Sizes:
         }
 
     def _ends(self, low, high):
-        """Ends of an interval."""
-        return MISSING if np.isnan(low) else f"{low:{self.form}} to {high:{self.form}}"
+        """Ends of an interval, rounded outwards."""
+        return MISSING if np.isnan(low) else f"{bounding(low, 3, up=False)} to {bounding(high, 3, up=True)}"
 
 
 _OF_ALL = "One touchdown, no voltage, exact inputs, surfaces as stated."

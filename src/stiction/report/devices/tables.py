@@ -15,7 +15,6 @@ from stiction.report.format import (
     error_alone,
     fraction_with_band,
     humidity_text,
-    lower_to,
     number,
 )
 from stiction.report.limits import words
@@ -23,7 +22,7 @@ from stiction.report.limits.words import numbered, texts, with_numbers
 from stiction.report.model_error import column
 from stiction.report.model_error import sentences as model_errors
 from stiction.report.table import DEVICE, Table, Term, as_text, table_stage, warned
-from stiction.rounding import in_percent
+from stiction.rounding import in_percent, lower_to
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.chart import axes, charts, largest_error_between
 from stiction.stages.devices.device_warnings import curves, not_modelled
