@@ -18,6 +18,12 @@ def test_nothing_to_do():
     assert list(explained(heard())) == ["Nothing would be computed: all results are up to date."]
 
 
+def test_a_dry_run_that_is_told_to_be_quiet_reports_no_jobs_but_their_number():
+    assert list(explained(heard(plan(beams=2, all=1)))) == [
+        "At most 3 jobs would run: without --quiet, this says which and why."
+    ]
+
+
 def test_causes_come_before_what_follows_from_them():
     run = heard(
         plan(beams=2, chaos=1, all=1),

@@ -25,6 +25,9 @@ _CHANGED = re.compile(r"before: (.*?) now: (.*)", re.DOTALL)
 def explained(run: Run) -> Iterator[str]:
     """Yield lines on the jobs of a run and their reasons, from all reports of a dry run. The first counts the jobs."""
     jobs = [job for job in run.jobs.values() if job.logs]  # the others only collect files
+    if run.planned and not run.jobs:
+        yield f"At most {run.total} jobs would run: without --quiet, this says which and why."
+        return
     if not jobs:
         yield "Nothing would be computed: all results are up to date."
         return
