@@ -316,6 +316,18 @@ def test_ratios_of_points_are_within_their_range_and_each_its_own():
         assert effort.all == training.SETS[name].all[: effort.points]
 
 
+@pytest.mark.parametrize("ratio", [0.05, 1.0, 4.0])
+def test_solids_of_another_attraction_follow_the_combining_relation(ratio):
+    plan = attraction.scaled(training.plan_of(POINT, training.base()), ratio)
+    water, dry = (plan.config["materials"]["OfS"]["hamaker_constant_zJ"][medium] for medium in ("water", "dry"))
+    assert 1e-21 * water == pytest.approx(ratio * HAMAKER_CONSTANT["water"])
+    (own_water, own_dry) = (1e21 * HAMAKER_CONSTANT[medium] for medium in ("water", "dry"))
+    root = math.sqrt(37)
+    expected = own_dry * ((math.sqrt(water) + root) / (math.sqrt(own_water) + root)) ** 2
+    assert dry == pytest.approx(expected)
+    assert plan.config["materials"]["OfT"] == plan.config["materials"]["OfS"]
+
+
 def test_solids_of_points_are_within_their_ranges_and_each_its_own():
     seen = [points.drawn(point, 21) for point in points.SETS["decide_any"].all]
     sides = [side for _, both in seen for side in both]

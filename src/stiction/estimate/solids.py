@@ -9,7 +9,8 @@ humid air is their attraction through water beside that of the water,
 
 .. math:: r = \frac{\mathfrak{H}}{\mathfrak{H}_0} \frac{\Gamma_0}{\Gamma} ,
 
-1 for polysilicon that water wets perfectly at 300 K. Its change of lengths and forces is learnt.
+1 for polysilicon that water wets perfectly at 300 K. Its change of lengths and forces is learnt. ASSUME: in humid air
+the attraction through air, beyond the film, follows from that through water.
 """
 
 import math

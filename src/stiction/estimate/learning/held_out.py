@@ -72,8 +72,10 @@ _OF_SOLIDS = (
     "of other solids are, as all intervals. The control takes them as polysilicon that water wets perfectly:"
 )
 _OTHER_BRIDGES = (
-    "Intervals of bridges of other solids are wider by the larger of both factors. No such bridge was tested in full "
-    "contact. In dry air other moduli are exactly similar, and intervals are those above."
+    "Forces of other solids err to the unsafe side on average, within their intervals: the estimate takes attraction "
+    "through air, beyond the film, to follow from that through water. Intervals of bridges of other solids are wider "
+    "by the larger of both factors. No such bridge was tested in full contact. In dry air other moduli are exactly "
+    "similar, and intervals are those above."
 )
 _FORCES_IN_DRY_AIR = "Forces in dry air, beside patches changed by {} strips of 3 µm in full contact:"
 

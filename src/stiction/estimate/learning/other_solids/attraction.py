@@ -27,12 +27,14 @@ FOLDER = "attraction"
 #: Least and largest Hamaker constant over polysilicon's, even in its logarithm: from silica through water to gold on
 #: sides of which water has a contact angle of 70°.
 RATIOS = (0.04, 8.0)
+#: Hamaker constant of water [zJ]; J. N. Israelachvili, Intermolecular and Surface Forces.
+_OF_WATER = 37.0
 #: Airs of a point, the first of those of polysilicon.
 AIRS = 3
 #: Sets to learn from: the first points of those of polysilicon.
 SETS = {
     name: replace(training.SETS[name], points=points, states=AIRS)
-    for name, points in (("learn_any", 16), ("learn_typical", 18))
+    for name, points in (("learn_any", 32), ("learn_typical", 32))
 }
 
 
@@ -46,9 +48,28 @@ def ratio_of(point: Point, seed: int) -> float:
     return round(math.exp(stream(seed, "estimate", "attraction", point.number).uniform(low, high)), 4)
 
 
+def in_dry_air(through_water: float) -> float:
+    """Hamaker constant of two solids in dry air, from that through water, by the combining relation [zJ].
+
+    As `stiction.contact.vanderwaals.combined`.
+
+    Examples
+    --------
+    >>> round(in_dry_air(4.6)), round(in_dry_air(250))  # silica, gold
+    (68, 479)
+    """
+    return (through_water**0.5 + _OF_WATER**0.5) ** 2
+
+
 def scaled(plan: Plan, ratio: float) -> Plan:
-    """Plan of a point whose solids attract each other as polysilicon by a ratio."""
-    material = {"hamaker_constant_zJ": {name: ratio * from_si(each, "zJ") for name, each in HAMAKER_CONSTANT.items()}}
+    """Plan of a point whose solids attract each other through water as polysilicon by a ratio.
+
+    ASSUME: in air, beyond the film, they do as the combining relation says, in proportion to polysilicon.
+    """
+    polysilicon = {medium: from_si(constant, "zJ") for medium, constant in HAMAKER_CONSTANT.items()}
+    through_water = ratio * polysilicon["water"]
+    dry = polysilicon["dry"] * (in_dry_air(through_water) / in_dry_air(polysilicon["water"]))
+    material = {"hamaker_constant_zJ": {"water": through_water, "dry": dry}}
     return with_materials(plan, material, material)
 
 

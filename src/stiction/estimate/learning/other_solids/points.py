@@ -18,6 +18,7 @@ from stiction.config.units import to_si
 from stiction.contact import meniscus
 from stiction.estimate.learning import patches, training
 from stiction.estimate.learning.design import Point, SurfaceLaw, states
+from stiction.estimate.learning.other_solids.attraction import in_dry_air
 from stiction.estimate.learning.training import (
     FACTORS,
     TrainingEffort,
@@ -37,8 +38,6 @@ FOLDER = "solids"
 #: water [zJ], logarithmic, and contact angle [°].
 TEMPERATURES = (275.0, 370.0)
 RANGES = {"modulus": (60.0, 400.0), "poisson_ratio": (0.15, 0.35), "hamaker": (4.6, 250.0), "angle": (0.0, 80.0)}
-#: Hamaker constant of water [zJ]; J. N. Israelachvili, Intermolecular and Surface Forces.
-_OF_WATER = 37.0
 #: Sets of points by name. Their seeds are in no other set.
 SETS = {
     "decide_typical": TrainingEffort(16, 21, SurfaceLaw.TYPICAL, 40, to_si(1600, "um"), 1, 1, 400),
@@ -61,11 +60,10 @@ def _material(rng):
     """Material of one side. Its constants through water and air follow from each other by the combining relation."""
     modulus, poisson_ratio, angle = (rng.uniform(*RANGES[name]) for name in ("modulus", "poisson_ratio", "angle"))
     through_water = math.exp(rng.uniform(*map(math.log, RANGES["hamaker"])))
-    in_dry_air = (through_water**0.5 + _OF_WATER**0.5) ** 2
     return {
         "young_modulus_GPa": round(modulus, 1),
         "poisson_ratio": round(poisson_ratio, 3),
-        "hamaker_constant_zJ": {"water": round(through_water, 2), "dry": round(in_dry_air, 2)},
+        "hamaker_constant_zJ": {"water": round(through_water, 2), "dry": round(in_dry_air(through_water), 2)},
         "contact_angle_deg": round(angle, 1),
     }
 
