@@ -104,12 +104,12 @@ def answer(
     """
     if isinstance(question, NotLearnt):
         raise question
-    found = {air: _in_air(question, air, table, tips, full) for air in question.humidities}
+    in_airs = {air: _in_air(question, air, table, tips, full) for air in question.humidities}
     of_once = {p: -math.expm1(math.log1p(-p) / question.touchdowns) for p in FRACTIONS}
-    worst = (_worst([one.row(p, normal_score(of_once[p])) for one in found.values()]) for p in FRACTIONS)
+    worst = (_worst([in_air.row(p, normal_score(of_once[p])) for in_air in in_airs.values()]) for p in FRACTIONS)
     rows = tuple(map(question.row, worst))
-    decides = min(found, key=lambda air: found[air].length(normal_score(of_once[CHOSEN])))
-    stuck = None if question.stated is None else _stuck(question, list(found.values()))
+    decides = min(in_airs, key=lambda air: in_airs[air].length(normal_score(of_once[CHOSEN])))
+    stuck = None if question.stated is None else _stuck(question, list(in_airs.values()))
     return Estimate(question, rows, stuck, decides, question.life)
 
 
@@ -123,8 +123,8 @@ def in_one_air(
     NotLearnt
         If the estimate does not know it.
     """
-    found = _in_air(question, air, *learnt)
-    return [question.row(found.row(p, normal_score(p))) for p in fractions]
+    in_air = _in_air(question, air, *learnt)
+    return [question.row(in_air.row(p, normal_score(p))) for p in fractions]
 
 
 @dataclass(frozen=True)
@@ -141,7 +141,7 @@ class LengthsInAir:
         """Mean and scatter of the logarithm of a length [m] over surfaces like those that are assumed."""
         if not self.members:
             return math.log(self.stated.at(score)), 0.0
-        values = [math.log(one.at(score)) for one in self.members]
+        values = [math.log(member.at(score)) for member in self.members]
         m, mean = len(values), sum(values) / len(values)
         scatter = math.sqrt(sum((value - mean) ** 2 for value in values) / (m - 1))
         return mean, scatter * math.sqrt(1 + 1 / m)
@@ -199,8 +199,8 @@ def _worst(rows):
 
 def _stuck(question, airs):
     """Fraction stuck at the stated length or force in the worst air, with the ends of 95 %, after all touchdowns."""
-    found = ([after(score, question.touchdowns) for score in one.scores(question.stated)] for one in airs)
-    return tuple(max(column) for column in zip(*found, strict=True))
+    fractions = ([after(score, question.touchdowns) for score in air.scores(question.stated)] for air in airs)
+    return tuple(max(column) for column in zip(*fractions, strict=True))
 
 
 def _in_air(question, air, table, tips, full):
@@ -217,9 +217,9 @@ def _in_air(question, air, table, tips, full):
     return LengthsInAir(errors, stated, tuple(members), question.averaged, question.closed)
 
 
-def _errors(question, part):
+def _errors(question, learnt):
     """Numbers about the errors of its lengths in a part of the table. In dry air, other solids are exactly similar."""
-    errors = question.errors(part)
+    errors = question.errors(learnt)
     if question.is_of_polysilicon or OF_OTHER_SOLIDS not in errors:
         return errors
     return {**errors, "margins": errors[OF_OTHER_SOLIDS]}

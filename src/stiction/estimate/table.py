@@ -34,21 +34,21 @@ class Surrogate:
 
     def at(self, coordinates: Sequence[float]) -> "Values":
         """Quantities at some coordinates, with the distance from the nearest node."""
-        known = [coordinates[k] for k in self.columns]
-        standard = [(x - mean) / scale for x, mean, scale in zip(known, self.centre, self.scale, strict=True)]
-        place = [x / length for x, length in zip(standard, self.lengths, strict=True)]
-        distances = [math.dist(place, node) for node in self.nodes]
+        chosen = [coordinates[k] for k in self.columns]
+        standard = [(x - mean) / scale for x, mean, scale in zip(chosen, self.centre, self.scale, strict=True)]
+        scaled = [x / length for x, length in zip(standard, self.lengths, strict=True)]
+        distances = [math.dist(scaled, node) for node in self.nodes]
         near, terms = [math.exp(-0.5 * distance * distance) for distance in distances], [1.0, *standard]
-        found = {name: _dot(self.trend[name], terms) + _dot(self.weights[name], near) for name in self.trend}
-        return Values(found, min(distances), self._outside(known))
+        quantities = {name: _dot(self.trend[name], terms) + _dot(self.weights[name], near) for name in self.trend}
+        return Values(quantities, min(distances), self._outside(chosen))
 
     def side(self, number: int, coordinate: float) -> str:
         """Side of the design on which a coordinate of a number is, in a word."""
         return "large" if coordinate > self.centre[self.columns.index(number)] else "small"
 
-    def _outside(self, known):
+    def _outside(self, chosen):
         """Numbers of the coordinates beyond the design."""
-        ends = zip(self.columns, known, self.low, self.high, strict=True)
+        ends = zip(self.columns, chosen, self.low, self.high, strict=True)
         return tuple(k for k, x, low, high in ends if not low <= x <= high)
 
 

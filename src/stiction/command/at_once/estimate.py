@@ -202,15 +202,15 @@ def _kind_of(arguments):
 
 def _sections(arguments):
     """Sections of solids and water that options state, as in files."""
-    found = {}
+    sections = {}
     for name, section in _OF_SECTIONS.items():
         if (value := getattr(arguments, name)) is not None:
-            found[section] = {OPTIONS[name][0]: value}
+            sections[section] = {OPTIONS[name][0]: value}
     if arguments.angles:
-        found["materials"] = {
+        sections["materials"] = {
             side: {"contact_angle_deg": angle} for side, angle in zip(_SIDES, arguments.angles, strict=True)
         }
-    return found
+    return sections
 
 
 def _stated(arguments):

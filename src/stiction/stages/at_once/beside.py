@@ -255,9 +255,9 @@ def _of_solids(question, has_material):
         "temperature": (question.temperature, "K"),
     }
     numbers = moduli if all(map(question.is_dry, question.humidities)) else moduli | of_water
-    own = {name: number for name, number in numbers.items() if number[0] != getattr(polysilicon, name)}
-    own |= {"hamaker_constant": (solids.in_dry_air, "zJ")} if has_material else {}
-    return dict(_in_files(name, *number) for name, number in own.items())
+    differing = {name: number for name, number in numbers.items() if number[0] != getattr(polysilicon, name)}
+    differing |= {"hamaker_constant": (solids.in_dry_air, "zJ")} if has_material else {}
+    return dict(_in_files(name, *number) for name, number in differing.items())
 
 
 def _in_files(name, value, unit):

@@ -101,5 +101,5 @@ if __name__ == "__main__":
     trained = Path(sys.argv[1]) / FOLDER
     main(training.base(), computed, trained, SETS, *sys.argv[2:])
     for each, of_set in OF_BRIDGES.items():
-        some = range(0, of_set.points, bridges.EVERY[each])
-        train(trained / bridges.FOLDER / each, of_set.all, some, bridges.base(), computed_bridges)
+        numbers = range(0, of_set.points, bridges.EVERY[each])
+        train(trained / bridges.FOLDER / each, of_set.all, numbers, bridges.base(), computed_bridges)
