@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 from PIL import Image
 
-from stiction.answer.data import Between
+from stiction.answer.data import Answer, Between, Unasked
 from stiction.answer.sought import FORCE, LENGTH
 from stiction.report.axes import figures as of_axes
 from stiction.report.budget import figures as of_budgets
@@ -26,12 +26,19 @@ pytestmark = pytest.mark.slow
 
 #: Width of a phone without its margins, and least height of text there [pixels].
 PHONE, LEAST = 358, 11
+
+
+def to_build(size, **stricter):
+    """Answer about a cantilever with a size to build [m]."""
+    return Answer("C1", "cantilever", 1e-3, "m", size, size, (), (), **stricter)
+
+
 FIGURES = {
     "risk": (2, lambda: of_devices.simulated({("C1", rh): safe() for rh in (0.44, 0.67, 0.92)}, {})),
     "chart": (4, lambda: of_devices.chart({("C1", rh): charted(rh) for rh in (0.4, 0.5, 0.6)}, {})),
     "stoppers": (2, lambda: of_budgets.stoppers({"S1": STOPPERS["S1"]}, {})),
     "budget": (4, lambda: of_budgets.budget(BEAMS | {key: one for key, one in BUDGETS.items() if "tip" in key})),
-    "life": (1, lambda: life.figure({"C1": layout(beam_answers({0.67: safe()}, {}, OF), OF)}, {"C1": 1e-4})),
+    "life": (1, lambda: life.figure({"C1": layout(beam_answers({0.67: safe()}, {}, OF), OF)}, {"C1": to_build(1e-4)})),
     "roughness": (1, lambda: of_axes.roughness(rough())),
     "map": (2, lambda: of_axes.roughness_map(rough(others=(0.0, -0.5, 0.5)))),
     "process": (1, lambda: of_axes.devices(*etched(), "D")),
@@ -63,7 +70,7 @@ def test_a_page_has_a_picture_of_every_panel_readable_on_a_phone_and_not_cut(nam
 @pytest.mark.parametrize(("build", "short"), [(1e-6, False), (1e-2, True)])
 def test_the_legend_of_a_life_names_what_is_drawn_alone(build, short):
     answers = layout(beam_answers({0.67: safe()}, {}, OF), OF, length=250e-6)
-    figure = life.figure({"C1": answers}, {"C1": build})
+    figure = life.figure({"C1": answers}, {"C1": to_build(build)})
     names = [text.get_text() for text in figure.legends[0].get_texts()]
     assert not any("hold" in name for name in names), "no row of a beam that is a length is about what holds it"
     assert "the same with errors of inputs" not in names, "nothing stricter is known"
@@ -76,21 +83,26 @@ def test_the_legend_of_a_life_names_what_is_drawn_alone(build, short):
 def test_a_limit_with_errors_has_a_mark_at_its_size_and_is_the_first_number_of_its_row(size):
     answers = layout(beam_answers({0.67: safe()}, {}, OF), OF, length=250e-6)
     row = next(answer for answer in life.answers_of(answers) if answer.unit == "m")
-    figure = life.figure({"C1": answers}, {"C1": 100e-6}, None, {"C1": {row.name: size}})
+    answer = to_build(100e-6, unasked=(Unasked(row.name, row.what, size),))
+    figure = life.figure({"C1": answers}, {"C1": answer})
     panel = figure.axes[0]
     assert [line.get_xdata()[0] for line in panel.lines if line.get_marker() == "D"] == pytest.approx([1e6 * size])
     assert sum(text.get_text().startswith(f"{1e6 * size:.0f}\nexact: ") for text in panel.texts) == 1
-    assert panel.get_title(loc="left") == f"C1: build 100 µm,\nbut {1e6 * size:.0f} µm by its strictest row"
+    title = " ".join(panel.get_title(loc="left").split())
+    assert title == f"C1: build 100 µm, but {1e6 * size:.0f} µm if water dries on it"
     assert "the same with errors of inputs" in [text.get_text() for text in figure.legends[0].get_texts()]
 
 
 @pytest.mark.parametrize(("sought", "allowed"), [(LENGTH, 90.0), (FORCE, 110.0)])
 def test_sizes_that_the_strictest_row_does_not_allow_are_shaded(sought, allowed):
     panel = Figure().add_subplot(xlim=(50.0, 150.0))
-    life._shade(panel, 100.0, sought.more_is_better)
-    low, high = panel.patches[0].get_x(), panel.patches[0].get_x() + panel.patches[0].get_width()
-    assert low < 200.0 - allowed < high
-    assert not low < allowed < high, "control: the safe side"
+    build = 100.0 + (100.0 - allowed) / 2
+    life._shade(panel, sought, [sought.scale * size for size in (100.0, build)])
+    for patch, end in zip(panel.patches, (100.0, build), strict=True):
+        low, high = patch.get_x(), patch.get_x() + patch.get_width()
+        assert low < 200.0 - allowed < high
+        assert not low < allowed < high, "control: the safe side"
+        assert end in (pytest.approx(low), pytest.approx(high))
     ends = panel.get_xlim()
     assert ends[0] <= low < high <= ends[1]
     assert (ends[0] < low) != (ends[1] > high), "room on the safe side alone"
@@ -99,7 +111,7 @@ def test_sizes_that_the_strictest_row_does_not_allow_are_shaded(sought, allowed)
 @pytest.mark.parametrize(("size", "said"), [(90e-6, ["90"]), (100.2e-6, [])])
 def test_a_life_has_a_stricter_size_between_airs_in_red_unless_it_reads_as_the_size_to_build(size, said):
     answers = layout(beam_answers({0.67: safe()}, {}, OF), OF, length=250e-6)
-    figure = life.figure({"C1": answers}, {"C1": 100e-6}, {"C1": Between(0.83, size, size)})
+    figure = life.figure({"C1": answers}, {"C1": to_build(100e-6, between=Between(0.83, size, size))})
     red = [text.get_text() for text in figure.axes[0].texts if text.get_color() == life._SHORT]
     rows = [label.get_text().replace("\n", " ") for label in figure.axes[0].get_yticklabels()]
     assert red == said

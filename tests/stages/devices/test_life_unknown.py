@@ -40,7 +40,7 @@ def answer_all_questions(dataset):
         assert np.isnan([one.low, one.high]).all() == bool(one.needs), "a row has a number or asks for a key"
         assert not one.needs or (cell, form) == ("–", f"unknown: state {one.needs}")
         assert (f"The {one.what} is unknown: state {one.needs}." in said) == bool(one.needs)
-    report.figure({"D": dataset}, {"D": np.nan})
+    report.figure({"D": dataset}, {"D": None})
     return {one.name: one.needs for one in answers if one.needs}
 
 

@@ -453,8 +453,7 @@ def test_no_text_of_a_row_decides_about_a_sentence(found):
 
 
 def test_the_figure_has_a_row_for_every_length_between_its_label_and_its_number(found):
-    builds = dict.fromkeys(found, np.nan)
-    figure = report.figure(found, builds)
+    figure = report.figure(found, dict.fromkeys(found))
     save(figure)  # lays it out
     for panel, dataset, unit in zip(figure.axes, found.values(), "mN", strict=True):
         shown = [one for one in answers_of(dataset) if one.unit == unit and np.isfinite(one.high)]
@@ -479,8 +478,8 @@ def test_limits_that_do_not_allow_the_size_to_build_are_red(found, factor):
         unit = "mN"[not is_length]
         built = Answer(name, "", 1e-3, unit, build, build, (), ())
         stricter = unasked(dataset, built)
-        names = {limit.name: limit.size for limit in stricter}
-        (panel,) = report.figure({name: dataset}, {name: build}, {}, {name: names}).axes
+        names = {limit.name for limit in stricter}
+        (panel,) = report.figure({name: dataset}, {name: replace(built, unasked=stricter)}).axes
         texts = {round(text.xy[1]): text.get_text() for text in panel.texts}
         for k, one in enumerate(shown):
             assert ("exact: " in texts[k]) == (one.name in names)
@@ -488,7 +487,7 @@ def test_limits_that_do_not_allow_the_size_to_build_are_red(found, factor):
         red = [round(text.xy[1]) for text in panel.texts if text.get_color() == report._SHORT]  # noqa: SLF001
         short = [k for k, end in enumerate(ends) if (end < build if is_length else end > build)]
         assert red == [k for k, one in enumerate(shown) if k in short or one.name in names]
-        assert {shown[k].name for k in short} <= names.keys(), "errors of the inputs make limits stricter"
+        assert {shown[k].name for k in short} <= names, "errors of the inputs make limits stricter"
         if factor > 1:
             assert short
         beside = replace(built, unasked=stricter)

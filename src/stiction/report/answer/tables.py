@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from stiction.answer.data import Answer, Between, Cause, Probability
+from stiction.answer.data import Answer, Cause, Probability
 from stiction.answer.sought import LENGTH
 from stiction.contact.air import Air
 from stiction.plan.names import by_name
@@ -172,22 +172,10 @@ def steps(answer: Answer) -> pd.DataFrame:
     )
 
 
-def builds(
-    datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, str]
-) -> tuple[dict[str, float], dict[str, Between | None], dict[str, dict[str, float]]]:
-    """Sizes to build by device [m or N], NaN where none is stated, stricter ones between airs, and limits by name.
-
-    These are stricter, too, though nothing stated asks for them.
-
-    Parameters as of `of_datasets`.
-    """
-    allowed = {name: None if answer.forbidden else answer for name, answer in of_datasets(datasets, warnings).items()}
-    sizes = {name: answer.build if answer else np.nan for name, answer in allowed.items()}
-    betweens = {name: answer.between if answer else None for name, answer in allowed.items()}
-    unasked = {
-        name: {limit.name: limit.size for limit in answer.unasked} if answer else {} for name, answer in allowed.items()
-    }
-    return sizes, betweens, unasked
+def allowed(datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, str]) -> dict[str, Answer | None]:
+    """Answers by device, none for a device whose size to build is forbidden. Parameters as of `of_datasets`."""
+    answers = of_datasets(datasets, warnings)
+    return {name: None if answer.forbidden else answer for name, answer in answers.items()}
 
 
 def of_datasets(answers: Mapping[str, xr.Dataset], warnings: Mapping[str, str]) -> dict[str, Answer]:

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from stiction.answer.data import Answer, Between
+from stiction.answer.data import Answer
 from stiction.answer.sought import FORCE, LENGTH, SOUGHT
 from stiction.config.units import from_si
 from stiction.constants import FREE_FALL
@@ -75,9 +75,10 @@ _SHORT, _EXACT = "#B00020", "0.3"
 _DECIDES, _BELOW, _FORBIDDEN = "D", "<", {"color": _SHORT, "alpha": 0.08, "linewidth": 0, "zorder": -1}
 #: What is safer, by whether more of a size is better.
 _SAFER = {False: "shorter", True: "stronger"}
-#: Heights of the legend and of a line of a title, and largest height of the figure [in]. Share of its width for labels,
-#: and mean width of their characters [in]. Room on the safe side of an axis, over its length.
-_LEGEND, _TITLE, _TALLEST, _LABELS, _CHARACTER, _ROOM = 0.3, 0.12, 100.0, 0.38, 0.045, 0.1
+#: Heights of the legend and of a further line of a title, and largest height of the figure [in]. Share of its width for
+#: labels, and mean width of their characters [in]. Characters of a title by width [1/in]. Room on the safe side of an
+#: axis, over its length.
+_LEGEND, _TITLE, _TALLEST, _LABELS, _CHARACTER, _TITLED, _ROOM = 0.3, 0.15, 100.0, 0.38, 0.045, 9, 0.1
 
 
 def table(life: Mapping[str, xr.Dataset]) -> Table:
@@ -362,48 +363,39 @@ def _ends(answer):
 
 
 @styled
-def figure(
-    life: Mapping[str, xr.Dataset],
-    builds: Mapping[str, float],
-    betweens: Mapping[str, Between | None] | None = None,
-    unasked: Mapping[str, Mapping[str, float]] | None = None,
-) -> Figure:
+def figure(life: Mapping[str, xr.Dataset], answers: Mapping[str, Answer | None]) -> Figure:
     """Limits of the lives of devices as dot plots: lengths of beams, or forces of stoppers, a panel for each device.
 
-    Sizes to build are by device [m or N], as are stricter ones between stated airs, and those by the names of rows that
-    nothing stated asks for, with the errors of the inputs. Sizes that the strictest row does not allow are shaded.
+    Answers are by device, none where the size to build is forbidden. Sizes that the strictest row does not allow are
+    shaded, and those beyond the size to build twice.
     """
-    shown = {name: _rows(dataset) for name, dataset in life.items()}
-    sought = {name: _sought(dataset) for name, dataset in life.items()}
     widest = int(_LABELS * page_width(DOUBLE) / _CHARACTER)
-    rows, strictest = {}, {}
-    for name, answers in shown.items():
-        beside, between = (unasked or {}).get(name, {}), (betweens or {}).get(name)
-        rows[name] = _marks(answers, builds[name], beside, widest)
-        rows[name] |= _mark_between(between, builds[name], sought[name], widest)
-        strictest[name] = _strictest(answers, [*beside.values(), *([between.size] if between else [])], builds[name])
-    heights = [dots.height(labels) + _TITLE for labels in rows.values()]
+    rows = {name: _rows(dataset) for name, dataset in life.items()}
+    marks = {name: _marks(limits, answers[name], widest) for name, limits in rows.items()}
+    titles = [_title(name, answer) for name, answer in answers.items()]
+    heights = [
+        dots.height(labels) + _TITLE * title.count("\n") for labels, title in zip(marks.values(), titles, strict=True)
+    ]
     size = DOUBLE, min(sum(heights) + _LEGEND, _TALLEST)
     figure_of_lives, axes = panels(len(rows), 1, size, height_ratios=heights)
-    for panel, (name, marks) in zip(axes[:, 0], rows.items(), strict=True):
-        of_device = sought[name]
-        if np.isfinite(builds[name]):
-            panel.axvline(builds[name] / of_device.scale, color=BUILD, linewidth=1.2, zorder=0)
-        dots.draw(panel, marks, column="")
-        _shade(panel, strictest[name] / of_device.scale, of_device.more_is_better)
-        panel.set_xlabel(f"{of_device.name} [{of_device.shown}], {_SAFER[of_device.more_is_better]} is safer")
-    letter(axes[:, 0], [_title(name, builds[name], strictest[name], sought[name]) for name in rows])
-    entries = list(_entries([mark for of_device in rows.values() for row in of_device.values() for mark in row]))
-    legend_outside(figure_of_lives, (entries, [entry.get_label() for entry in entries]), "upper", 2)
+    for panel, (name, answer) in zip(axes[:, 0], answers.items(), strict=True):
+        sought = _sought(life[name])
+        dots.draw(panel, marks[name], column="")
+        _shade(panel, sought, [_strictest(rows[name], answer, sought), answer.build if answer else np.nan])
+        panel.set_xlabel(f"{sought.name} [{sought.shown}], {_SAFER[sought.more_is_better]} is safer")
+    letter(axes[:, 0], titles)
+    entries = list(_entries([mark for of_device in marks.values() for row in of_device.values() for mark in row]))
+    legend_outside(figure_of_lives, (entries, [entry.get_label() for entry in entries]), "lower", 2)
     return figure_of_lives
 
 
-def _strictest(answers, others, build):
-    """Strictest size of all rows whose safe size is known, and of others [m, N]."""
-    ends = [unsafe_end(answer) for answer in answers if not _is_open(answer)]
-    sizes = [size for size in (*ends, *others, build) if np.isfinite(size)]
-    is_force = any(SOUGHT[answer.unit].more_is_better for answer in answers)
-    return (max if is_force else min)(sizes, default=np.nan)
+def _strictest(limits, answer, sought):
+    """Strictest size of all rows whose safe size is known, and of the answer [m, N]."""
+    sizes = [unsafe_end(limit) for limit in limits if not _is_open(limit)]
+    if answer:
+        sizes += [answer.build, *(limit.size for limit in answer.unasked)]
+        sizes += [answer.between.size] if answer.between else []
+    return sought.sign * min((sought.sign * size for size in sizes if np.isfinite(size)), default=np.nan)
 
 
 def _is_open(answer):
@@ -411,21 +403,22 @@ def _is_open(answer):
     return bool(np.isnan(answer.low)) and not SOUGHT[answer.unit].more_is_better
 
 
-def _shade(panel, strictest, more_is_better):
-    """Shade the sizes that a row does not allow, and leave room on their safe side."""
+def _shade(panel, sought, ends):
+    """Shade sizes beyond the strictest one, and once more beyond the size to build, with room on the safe side."""
     low, high = panel.get_xlim()
-    if np.isfinite(strictest):
-        room = _ROOM * (high - low)
-        panel.axvspan(*((low, strictest) if more_is_better else (strictest, high)), **_FORBIDDEN)
-        panel.set_xlim(low - room * (not more_is_better), high + room * more_is_better)
+    for size in (end / sought.scale for end in ends if np.isfinite(end)):
+        panel.axvspan(*((low, size) if sought.more_is_better else (size, high)), **_FORBIDDEN)
+    if np.isfinite(ends[-1]):
+        panel.axvline(ends[-1] / sought.scale, color=BUILD, linewidth=1.2, zorder=0)
+    room = _ROOM * (high - low)
+    panel.set_xlim(low - room * (not sought.more_is_better), high + room * sought.more_is_better)
 
 
-def _title(name, build, strictest, sought):
-    """Title of a panel: the device, its size to build, and the strictest size of its rows if that reads differently."""
-    if not np.isfinite(build):
+def _title(name, answer):
+    """Title of a panel: the device, its size to build, and the stricter ones beside it."""
+    if answer is None or not np.isfinite(answer.build):
         return name
-    text, strict = (safe_size(size, sought) for size in (build, strictest))
-    return f"{name}: build {text}" + (f",\nbut {strict} by its strictest row" if strict != text else "")
+    return textwrap.fill(f"{name}: build {words.to_build(answer)}", int(page_width(DOUBLE) * _TITLED))
 
 
 def _entries(marks):
@@ -433,8 +426,9 @@ def _entries(marks):
     for question, colour in _COLOURS.items():
         if colour in {mark.color for mark in marks}:
             yield Line2D([], [], color=colour, linewidth=4, label=_QUESTIONS[question])
-    yield Line2D([], [], color=BUILD, label="size to build, all stated inside")
-    yield Patch(**_FORBIDDEN, label="sizes that a row does not allow")
+    yield Line2D([], [], color=BUILD, label="size to build, if no stricter row applies")
+    yield Patch(**_FORBIDDEN, label="sizes that a stricter row does not allow")
+    yield Patch(**_FORBIDDEN | {"alpha": 2 * _FORBIDDEN["alpha"]}, label="sizes beyond that to build")
     yield _sign(marker="o", color="0.3", label="dot or bar: one cause, inputs exact")
     if _DECIDES in {mark.marker for mark in marks}:
         yield _sign(marker=_DECIDES, color=_SHORT, label="the same with errors of inputs")
@@ -454,43 +448,43 @@ def _rows(dataset):
     return [answer for answer in answers_of(dataset) if answer.unit == unit and np.isfinite(answer.high)]
 
 
-def _marks(answers, build, unasked, widest):
-    """One row for each answer from its lower to its upper bound, with both numbers, by its label.
+def _marks(limits, answer, widest):
+    """One row for each limit from its lower to its upper bound, with both numbers, by its label.
 
-    Stricter sizes with the errors of the inputs, by the names of their rows, have a mark of their own and stand before
-    bounds with exact inputs.
+    Stricter sizes with the errors of the inputs have a mark of their own and stand before bounds with exact inputs.
     """
-    rows = {}
-    for answer in answers:
-        least, scale = answer.high if np.isnan(answer.low) else answer.low, SOUGHT[answer.unit].scale
-        colour, low, high = _COLOURS[answer.question], least / scale, answer.high / scale
-        text, sought = " to ".join(end for end in dict.fromkeys(_ends(answer)) if end != MISSING), SOUGHT[answer.unit]
-        if is_open := _is_open(answer):
+    rows, build = {}, answer.build if answer else np.nan
+    stricter = {limit.name: limit.size for limit in answer.unasked} if answer else {}
+    for limit in limits:
+        sought = SOUGHT[limit.unit]
+        least, scale, colour = limit.high if np.isnan(limit.low) else limit.low, sought.scale, _COLOURS[limit.question]
+        text = " to ".join(end for end in dict.fromkeys(_ends(limit)) if end != MISSING)
+        if is_open := _is_open(limit):
             text = f"at most {text}"
-        shade, marker = _SHORT if is_short(answer, build) else _EXACT, _BELOW if is_open else "o"
-        marks = [dots.Mark(low, high, colour, text, filled=not is_open, text_color=shade, marker=marker)]
-        if answer.name in unasked:
-            size = unasked[answer.name] / scale
-            marks = _with_errors(marks[0], size, bounding(size, 3, up=sought.more_is_better))
-        rows[textwrap.fill(_label(answer), widest)] = marks
-    return rows
+        shade, marker = _SHORT if is_short(limit, build) else _EXACT, _BELOW if is_open else "o"
+        ends = least / scale, limit.high / scale
+        marks = [dots.Mark(*ends, colour, text, filled=not is_open, text_color=shade, marker=marker)]
+        if limit.name in stricter:
+            marks = _with_errors(marks[0], stricter[limit.name], sought)
+        rows[textwrap.fill(_label(limit), widest)] = marks
+    return rows | (_mark_between(answer, widest) if answer else {})
 
 
-def _with_errors(mark, size, number):
+def _with_errors(mark, size, sought):
     """Marks of a row with exact inputs and of its stricter size with their errors, with both numbers."""
-    text = f"{number}\nexact: {mark.text}"
-    return [replace(mark, text=""), dots.Mark(size, size, _SHORT, text, marker=_DECIDES, text_color=_SHORT)]
+    shown = size / sought.scale
+    text = f"{bounding(shown, 3, up=sought.more_is_better)}\nexact: {mark.text}"
+    return [replace(mark, text=""), dots.Mark(shown, shown, _SHORT, text, marker=_DECIDES, text_color=_SHORT)]
 
 
-def _mark_between(between, build, sought, widest):
+def _mark_between(answer, widest):
     """Row of the size to build between the stated airs by its label, none if it reads as the size to build."""
-    if between is None or not sought.is_stricter(between.size, build):
+    between, sought = answer.between, answer.sought
+    if between is None or not sought.is_stricter(between.size, answer.build):
         return {}
     size, text = between.size / sought.scale, bounding(between.size / sought.scale, 3, up=sought.more_is_better)
     label = f"{sought.label} to build at RH {between.humidity:.2g}, between stated airs, interpolated"
-    return {
-        textwrap.fill(label, widest): [dots.Mark(size, size, _COLOURS[STICK], text, filled=False, text_color=_SHORT)]
-    }
+    return {textwrap.fill(label, widest): [dots.Mark(size, size, _SHORT, text, filled=False, text_color=_SHORT)]}
 
 
 def _label(answer):
@@ -524,7 +518,7 @@ STAGES = (
         "life",
         "what limits the life of devices, on one axis",
         "Devices",
-        compute=lambda data: figure(data["life"], *tables.builds(data["answers"], data["warnings"])),
+        compute=lambda data: figure(data["life"], tables.allowed(data["answers"], data["warnings"])),
         **_OF_ALL | {"inputs": _inputs_of_figure},
     ),
 )

@@ -271,9 +271,7 @@ def with_life(page: Page, name: str, answers: xr.Dataset, answer: Answer) -> Pag
     first, *others = page.sections
     cells = life.table({name: answers}).cells.drop(columns="device")
     build = np.nan if answer.forbidden else answer.build
-    between = None if answer.forbidden else answer.between
-    unasked = {} if answer.forbidden else {limit.name: limit.size for limit in answer.unasked}
-    picture = life.figure({name: answers}, {name: build}, {name: between}, {name: unasked})
+    picture = life.figure({name: answers}, {name: None if answer.forbidden else answer})
     section = Section("From the first contact to the last", (life.CAPTION,), cells, picture)
     sentences, sections = life.sentences(answers, build, bool(answer.stays)), [first, section, *others]
     summary = page.summary and replace(page.summary, basis=[*page.summary.basis, *life.judged_without(answer)])
