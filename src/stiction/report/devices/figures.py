@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patheffects import withStroke
 
 from stiction.answer.data import Answer
 from stiction.contact.air import Air, is_humid
@@ -19,8 +20,8 @@ from stiction.devices.limits.limit import Limit
 from stiction.devices.risk import one_in
 from stiction.plan.names import by_name
 from stiction.report.answer.tables import of_datasets
-from stiction.report.answer.words import is_forbidden, to_build
-from stiction.report.format import TO_UM, UM, bounding, fraction_with_band
+from stiction.report.answer.words import is_forbidden, to_build, unasked
+from stiction.report.format import TO_UM, UM, bounding, fraction_with_band, listed
 from stiction.report.limits.words import distinct, in_short, numbered, with_numbers
 from stiction.report.style import (
     BUILD,
@@ -186,17 +187,22 @@ def chart(
     figure, columns, lines = columns_of_panels(len(subjects), 1, at_most_double(1.5 * SINGLE), _PANEL)
     for panel, (name, gap, shape) in zip(columns[:, 0], subjects, strict=True):
         curves = wholes[name].sel(gap=gap, shape=shape)
-        _thicknesses(panel, curves, shape, placed[name])
         thickness, own_gap, answer = (answers or {}).get(name, (np.nan, np.nan, None))
-        if not END_STATES[shape].only_if and np.isclose(gap, own_gap, rtol=1e-6, atol=0):
-            limits = _limits(curves.isel(thickness=np.isclose(curves.thickness, thickness, rtol=1e-6, atol=0)))
-            _mark_sizes_to_build(panel, limits, answer, placed[name])
+        has_its_gap = np.isclose(gap, own_gap, rtol=1e-6, atol=0)
+        is_its_own = has_its_gap & np.isclose(curves.thickness, thickness, rtol=1e-6, atol=0)
+        _thicknesses(panel, curves, shape, placed[name], is_its_own)
+        if END_STATES[shape].only_if:
+            style = {"xycoords": "axes fraction", "ha": "right", "va": "top", "fontsize": 7}
+            panel.annotate("no size to build here", (0.98, 0.98), **style)
+        elif has_its_gap:
+            _mark_sizes_to_build(panel, _limits(curves.isel(thickness=is_its_own)), answer, placed[name])
         low, high = panel.dataLim.intervaly
         panel.set(xlabel="relative humidity [–]", ylabel=_OF_CHART, ylim=(0.95 * low, high + _ROOM * (high - low)))
         humidity_axis(panel, placed[name])
-        _name_sides(panel, _limits(curves), placed[name])
+        _name_sides(panel, curves, placed[name])
         marks = [
-            _marks_of_warnings(numbers.get((name, thickness, gap, shape), ())) for thickness in curves.thickness.values
+            f" ({name})" * int(own) + _marks_of_warnings(numbers.get((name, thickness, gap, shape), ()))
+            for thickness, own in zip(curves.thickness.values, is_its_own, strict=True)
         ]
         _name_thicknesses(panel, curves, marks)
     titles = [f"{name}, gap {TO_UM * gap:g} µm, {END_STATES[shape].title}" for name, gap, shape in subjects]
@@ -224,28 +230,33 @@ def _mark_sizes_to_build(panel, limits, answer, placed):
     decides, sought = answer.together.humidity, answer.sought
     label = f"to build {answer.device}: {to_build(answer)}"
     alone = {air.humidity: air.build for air in answer.airs if air.humidity != decides and np.isfinite(air.build)}
-    only = f"to build {answer.device} in this air alone"
+    beside = f", but {listed(sizes)}" if (sizes := unasked(answer)) else ""
+    only = f"to build {answer.device} in this air alone{beside}"
     styles = {"markerfacecolor": "white", "label": only}, {"label": label}
     for sizes, style in zip((alone, {decides: answer.build}), styles, strict=True):
         for humidity, size in sizes.items():
             at, height = placed.get(humidity, humidity), TO_UM * size
             for limit in limits.sel(relative_humidity=limits.relative_humidity == humidity).values.flat:
                 panel.plot([at, at], [height, limit], color=BUILD, linewidth=0.8)
-            panel.plot(at, height, "D", color=BUILD, markersize=5, zorder=4, linestyle="", **style)
+            panel.plot(at, height, "D", color=BUILD, markersize=5, zorder=4, linestyle="", path_effects=_HALO, **style)
             number = bounding(size / sought.scale, 3, sought.more_is_better)
             _write(panel, number, (at, height), (3, -2), color=BUILD, va="top", zorder=5)
 
 
-def _name_sides(panel, limits, placed):
-    """Name both sides of the longest curve of a panel at its middle point."""
-    curve = limits.max("thickness").dropna("relative_humidity")
+#: White edge of a marker, so that it stands apart from curves.
+_HALO = [withStroke(linewidth=3, foreground="white")]
+
+
+def _name_sides(panel, curves, placed):
+    """Name both sides of a curve at the middle point of the longest one of a panel."""
+    curve = _limits(curves).max("thickness").dropna("relative_humidity")
     if not curve.size:
         return
     k = curve.size // 2
     point = placed[float(curve.relative_humidity[k])], float(curve[k])
     above, below = ("left", "right") if curve[0] >= curve[-1] else ("right", "left")
-    _write(panel, "longer: sticks", point, (0, 4), ha=above, va="bottom", style="italic")
-    _write(panel, "shorter: releases", point, (0, -4), ha=below, va="top", style="italic")
+    _write(panel, "above: more stick", point, (0, 4), ha=above, va="bottom", style="italic")
+    _write(panel, "below: fewer stick", point, (0, -4), ha=below, va="top", style="italic")
 
 
 def _write(panel, text, point, apart, **style):
@@ -259,18 +270,19 @@ def _middle(curves):
     return float(curves.share.values[len(curves.share) // 2])
 
 
-def _thicknesses(panel, curves, shape, placed):
+def _thicknesses(panel, curves, shape, placed, is_its_own):
     """Curves of all thicknesses of one device, gap and shape, their bounds, and marks of power laws.
 
-    Points are at the places of their humidities; no line leads to dry air.
+    Points are at the places of their humidities; no line leads to dry air. That of the device itself is thick.
     """
     share, (line, dotted) = _middle(curves), END_STATES[shape].lines
-    for thickness, shade in zip(curves.thickness.values, shades(curves.sizes["thickness"]), strict=True):
+    shown = zip(curves.thickness.values, shades(curves.sizes["thickness"]), is_its_own, strict=True)
+    for thickness, shade, is_thick in shown:
         for line_part, styles in _parts(curves.sel(thickness=thickness, share=share), (line, dotted)):
             at = [placed[humidity] for humidity in line_part.relative_humidity.values]
             by_law, lengths = line_part.by_elements.values == 0, TO_UM * line_part.safe_length
             fine, curve = _curve(at, lengths.values)
-            panel.plot(fine, curve, styles[0], color=shade)
+            panel.plot(fine, curve, styles[0], color=shade, linewidth=_WIDTHS[is_thick])
             if np.isfinite(error := error_between(np.array(at), lengths.values)):
                 ends = (1 - error) * curve, (1 + error) * curve
                 panel.fill_between(fine, *ends, color=shade, alpha=0.2, linewidth=0, label="error between the dots")
@@ -286,6 +298,10 @@ def _name_flat_surfaces(panel, lengths):
     first = lengths.isel(relative_humidity=0)
     if np.isfinite(first).any():
         _write(panel, "flat surfaces", (panel.dataLim.x0, float(first.max())), (2, 1), va="bottom")
+
+
+#: Widths of curves, of a beam of another thickness and of the device itself [points].
+_WIDTHS = {False: 1.1, True: 2.0}
 
 
 def _explain_chart(panel, curves, shape):
