@@ -95,14 +95,48 @@ def test_assumed_numbers_widen_an_interval_and_the_worst_air_decides(capsys):
     assert both == wetter
 
 
+def stuck_at(lines):
+    """Line on the fraction stuck at the stated size."""
+    (line,) = [line for line in lines if "% stick" in line]
+    return line.strip()
+
+
+@pytest.mark.parametrize("kind", ["cantilever", "stopper"])
+def test_a_size_beyond_that_to_use_is_said_to_be_unsafe_before_its_estimate(capsys, kind):
+    cantilever = [*OPTIONS, "--length"], 1, -1, "longer", "µm"
+    options, end, safer, word, unit = (
+        cantilever if kind == "cantilever" else (OF_STOPPER[:-1] + ["--force"], 2, 1, "less", "µN")
+    )
+    use = lengths(said(capsys, *options[:-1])[1])[1000][end]
+    safe, unsafe = (stuck_at(said(capsys, *options, f"{use + step:g}")[1]) for step in (safer, -safer))
+    assert unsafe.startswith(f"{use - safer:g} {unit} is {word} than {use:g}: not safe. Best estimate: ")
+    assert re.search(r"% stick, but up to [\w. ]+ % \(95 %\)\.$", unsafe)
+    assert safe.startswith(f"At {use + safer:g} {unit}, "), "the control"
+
+
+def test_a_size_that_collapses_while_a_liquid_dries_is_unsafe(tmp_path, capsys):
+    liquid = FILE.replace("devices:", "liquids: {water: {surface_tension_mN_per_m: 72}}\ndevices:")
+    at = {}
+    for text in (FILE, liquid):
+        (tmp_path / "mine.yaml").write_text(
+            text.replace("gap_um: 20, humidities: [0.6]}\n", "gap_um: 20, humidities: [0.6], length_um: 203}\n")
+        )
+        at[text] = stuck_at(said(capsys, str(tmp_path / "mine.yaml"))[1])
+    assert at[liquid].startswith("203 µm is longer than 199: not safe.")
+    assert at[FILE].startswith("At 203 µm, "), "the control: shorter than what sticks"
+
+
 def test_more_touchdowns_need_shorter_beams_and_a_stated_length_has_a_probability(capsys):
     once = lengths(said(capsys, *OPTIONS)[1])
     often = lengths(said(capsys, *OPTIONS, "--touchdowns=10")[1])
     assert often[100][0] == pytest.approx(once[1000][0], rel=0.01)  # 1 in 100 after ten is 1 in 1000 at each
     _, lines = said(capsys, *OPTIONS, f"--length={once[1000][0]}")
-    (stuck,) = [line for line in lines if "% stick (95 %:" in line]
-    value, low, high = map(float, re.findall(r"[\d.]+", stuck.partition(",")[2].replace("(95 %", ""))[:3])
+    value, high = map(float, re.findall(r"[\d.]+", stuck_at(lines).partition("estimate: ")[2])[:2])
     assert value == pytest.approx(0.1, rel=0.3)  # percent; the length has three digits
+    assert value <= high
+    low_length = once[1000][1]
+    safe = stuck_at(said(capsys, *OPTIONS, f"--length={low_length}")[1])
+    value, low, high = map(float, re.findall(r"[\d.]+", safe.partition(",")[2].replace("(95 %", ""))[:3])
     assert low <= value <= high
 
 
@@ -197,7 +231,7 @@ def test_a_stopper_by_options_is_that_of_a_file(tmp_path, capsys):
     assert "force [µN]" in of_options[1]
     forces = [row[0] for row in lengths(of_options).values()]
     assert forces == sorted(forces)
-    assert [line for line in of_options if line.startswith("  At 40 µN, ")]
+    assert stuck_at(of_options).startswith("40 µN is less than ")
     assert "--rms is missing" in said(capsys, "--rh=0.6", "--contact", "3", "2")[1][0]
     _, least, most, *_ = lengths(of_options)[1000]
     (short,) = estimate.in_short([str(tmp_path / "mine.yaml")])
@@ -369,14 +403,10 @@ def test_an_option_of_another_device_is_refused_and_not_left_out(capsys, words, 
 
 
 def test_more_than_half_is_at_least_half(capsys):
-    (line,) = [line for line in said(capsys, *OPTIONS, "--length=2000")[1] if "% stick (95 %:" in line]
-    assert "at least 50 % stick" in line
-    (line,) = [
-        line for line in said(capsys, *OPTIONS, "--length=2000", "--touchdowns=1000")[1] if "% stick (95 %:" in line
-    ]
-    assert "at least 99 % stick" in line
-    (line,) = [line for line in said(capsys, *OPTIONS, "--length=21")[1] if "% stick (95 %:" in line]
-    assert "less than 0.0001 % stick" in line
+    line = stuck_at(said(capsys, *OPTIONS, "--length=2000")[1])
+    assert line.endswith("not safe. Best estimate: at least 50 % stick.")
+    assert "at least 99 % stick." in stuck_at(said(capsys, *OPTIONS, "--length=2000", "--touchdowns=1000")[1])
+    assert "less than 0.0001 % stick (95 %: " in stuck_at(said(capsys, *OPTIONS, "--length=21")[1])
 
 
 @pytest.mark.parametrize("missing", ["rms", "rh", "thickness", "gap"])

@@ -58,7 +58,7 @@ def test_a_stated_length_has_its_fate(tmp_path, capsys, length, fate):
     lines = printed(tmp_path, capsys, with_keys(f"length_um: {length}"))
     assert f"At {length:g} µm it {fate}." in lines
     assert any(line.startswith(f"At {length:g} µm it does not touch below a half-sine shock of ") for line in lines)
-    assert any(line.startswith(f"At {length:g} µm, ") for line in lines)
+    assert any(line.startswith(f"{length:g} µm is longer than 199: not safe.") for line in lines) == (length > 199)
 
 
 def test_a_liquid_that_does_not_wet_has_no_length(tmp_path, capsys):

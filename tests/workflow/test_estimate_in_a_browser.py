@@ -49,8 +49,13 @@ def test_the_page_fits_a_phone(opened):
     opened.resize(390, 844)
     assert opened.run("return document.documentElement.scrollWidth") <= 390
     assert opened.run("const pre = document.getElementById('yaml'); return pre.scrollWidth - pre.clientWidth") == 0
-    assert opened.run("return document.getElementById('said').offsetHeight") <= 844 / 10
+    assert opened.run("return document.getElementById('bar').offsetHeight") <= 844 / 10
+    shown = (
+        "return [...document.querySelectorAll('[data-confidence=\"95\"]')].map((cell) => cell.offsetParent !== null)"
+    )
+    assert not any(opened.run(shown))
     opened.resize(1500, 1000)
+    assert all(opened.run(shown)), "the control"
 
 
 def test_the_page_asks_nothing_of_a_network(opened):
@@ -91,9 +96,10 @@ def test_the_command_says_of_the_file_of_the_page_what_the_page_says(
     for (const box of document.querySelectorAll('input[type=checkbox]')) box.checked = false;
     for (const key of {known}) document.getElementById('known_' + key).click();
     document.getElementById('form').dispatchEvent(new Event('input', {{bubbles: true}}));
-    return ['said', 'stuck', 'life', 'yaml'].map((id) => document.getElementById(id).textContent);
+    return ['said', 'unsafe', 'stuck', 'life', 'yaml'].map((id) => document.getElementById(id).textContent);
     """
-    said, stuck, life, text = opened.run(moved)
+    said, unsafe, stuck, life, text = opened.run(moved)
+    stuck = f"{unsafe} {stuck}".strip()
     assert f"humidities: [{air}]" in text
     assert ("liquids" in text) == (tension > 0 and kind != "stopper")
     assert ("materials:" in text) == (solids is OTHERS)
@@ -113,6 +119,44 @@ def test_the_command_says_of_the_file_of_the_page_what_the_page_says(
     life = life.replace("\N{NO-BREAK SPACE}", " ").splitlines()
     assert life == [line for line in lines if line.startswith("While ") or " it " in line and line not in (said, stuck)]
     assert len(life) == (0 if kind == "stopper" else 3 if tension else 1)
+
+
+@pytest.mark.parametrize(
+    ("kind", "slider", "safe", "unsafe"),
+    [("cantilever", "length_um", 100, 300), ("bridge", "length_um", 60, 400), ("stopper", "force_uN", 500, 20)],
+)
+def test_the_page_says_first_and_in_red_that_a_size_is_not_safe(opened, kind, slider, safe, unsafe):
+    moved = """
+    const [kind, slider, value] = arguments, first = document.getElementById('unsafe');
+    document.getElementById('tension_mN_per_m').value = 0;
+    document.getElementById('humidity').value = 0.6;
+    document.getElementById('kind').value = kind;
+    document.getElementById(slider).value = value;
+    document.getElementById('form').dispatchEvent(new Event('input', {bubbles: true}));
+    return [first.textContent, document.getElementById('before').textContent, getComputedStyle(first).color,
+      first === first.parentElement.firstElementChild];
+    """
+    sentence, before, colour, is_first = opened.run(moved, kind, slider, unsafe)
+    assert f"{unsafe} µ" in sentence
+    assert sentence.endswith(": not safe.")
+    assert (colour, is_first) == ("rgb(185, 28, 28)", True)
+    assert before == f"For exact inputs, before {'' if kind == 'stopper' else 'drying and '}fast separation."
+    assert opened.run(moved, kind, slider, safe)[0] == "", "the control"
+
+
+def test_what_is_known_of_the_surface_is_folded_until_it_is_stated(opened):
+    alone = """
+    for (const box of document.querySelectorAll('input[type=checkbox]')) box.checked = false;
+    document.getElementById('surface').open = false;
+    const box = document.getElementById('known_hurst'), isOpen = () => document.getElementById('surface').open;
+    document.getElementById('form').dispatchEvent(new Event('input', {bubbles: true}));
+    const before = isOpen();
+    box.click();
+    const after = isOpen();
+    box.click();
+    return [before, after];
+    """
+    assert opened.run(alone) == [False, True]
 
 
 def test_a_stopper_has_its_own_sliders_forces_and_file(opened):

@@ -72,14 +72,20 @@ class Estimate:
         return liquid if liquid and self.dried[liquid].stands < self._learnt else None
 
     @property
-    def _without_shock(self):
+    def use_if_slow(self) -> float:
         """Largest length or smallest force if it separates slowly [SI]. As in a run, no stated liquid collapses it."""
         return self.dried[self.drying].stands if self.drying else self._learnt
 
     @property
     def use(self) -> float:
         """Largest length or smallest force to use, NaN where a run alone knows it, see `is_fast` [SI]."""
-        return math.nan if self.is_fast else self._without_shock
+        return math.nan if self.is_fast else self.use_if_slow
+
+    @property
+    def is_unsafe(self) -> bool:
+        """Whether its stated size is beyond that to use even if it separates slowly."""
+        size = self.question.size
+        return size is not None and (size < self.use_if_slow if self.is_force else size > self.use_if_slow)
 
     @property
     def is_fast(self) -> bool:
@@ -89,7 +95,7 @@ class Estimate:
     @cached_property
     def touching(self) -> Touching:
         """Causes of its contact, at its own size or that to use if it separates slowly."""
-        return self.life.touching(self.question.size or self._without_shock)
+        return self.life.touching(self.question.size or self.use_if_slow)
 
 
 def answer(

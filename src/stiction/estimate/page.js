@@ -3,28 +3,30 @@ const TABLE = JSON.parse(document.getElementById("content").textContent);
 const CANTILEVER = "cantilever", BRIDGE = "bridge", STOPPER = "stopper";
 const INPUTS = [
   ["kind", "Device", [CANTILEVER, BRIDGE, STOPPER], CANTILEVER],
-  ["like", "Typical surface for what you do not know", Object.keys(TABLE.library), "B2"],
-  ["rms_nm", "rms of the underside [nm]", 1, 8, 0.1, 3],
-  ["hurst", "Hurst exponent", 0.3, 1, 0.05, null],
-  ["corner_rad_per_um", "corner of the spectrum [rad/µm]", 8, 60, 1, null],
-  ["cutoff_rad_per_um", "cut-off of the spectrum [rad/µm]", 100, 290, 5, null],
-  ["skewness", "skewness", -1.2, 0, 0.02, null],
-  ["kurtosis", "kurtosis", 3, 6, 0.05, null],
-  ["substrate", "opposite surface", Object.keys(TABLE.library), "Sub1"],
-  ["humidity", "relative humidity", 0.34, 0.92, 0.01, 0.6], // its lowest stop is dry air
-  ["side_um", "one side of the area in contact [µm]", 1, 6, 0.1, 3],
-  ["other_um", "other side [µm]", 1, 6, 0.1, 3],
-  ["force_uN", "restoring force [µN]", 1, 500, 1, 100],
   ["thickness_um", "thickness of the beam [µm]", 1, 6, 0.1, 2.6],
   ["gap_um", "gap [µm]", 2, 30, 0.5, 20],
   ["below_um", "gap [µm]", 0.5, 6, 0.1, 2],
   ["width_um", "width of the beam [µm]", 8, 40, 1, 30],
   ["length_um", "length of the beam [µm]", 50, 600, 5, 250],
   ["stress_MPa", "tensile stress [MPa]", 0, 200, 5, 50],
+  ["side_um", "one side of the area in contact [µm]", 1, 6, 0.1, 3],
+  ["other_um", "other side [µm]", 1, 6, 0.1, 3],
+  ["force_uN", "restoring force [µN]", 1, 500, 1, 100],
+  ["like", "Typical surface for what you do not know", Object.keys(TABLE.library), "B2"],
+  ["rms_nm", "rms of the underside [nm]", 1, 8, 0.1, 3],
+  ["substrate", "opposite surface", Object.keys(TABLE.library), "Sub1"],
+  ["humidity", "relative humidity", 0.34, 0.92, 0.01, 0.6], // its lowest stop is dry air
   ["touchdowns", "touchdowns", 1, 1000, 1, 1],
   ["voltage_V", "voltage in contact [V]", 0, 50, 0.5, 0],
   ["dielectric_nm", "dielectric, thickness over permittivity [nm]", 10, 1000, 10, 100],
   ["tension_mN_per_m", "surface tension of a liquid that dries, 0 without one [mN/m]", 0, 75, 0.1, 0],
+];
+const OF_SURFACE = [
+  ["hurst", "Hurst exponent", 0.3, 1, 0.05, null],
+  ["corner_rad_per_um", "corner of the spectrum [rad/µm]", 8, 60, 1, null],
+  ["cutoff_rad_per_um", "cut-off of the spectrum [rad/µm]", 100, 290, 5, null],
+  ["skewness", "skewness", -1.2, 0, 0.02, null],
+  ["kurtosis", "kurtosis", 3, 6, 0.05, null],
 ];
 const OF_MATERIAL = [
   ["modulus_GPa", "Young's modulus [GPa]", 60, 400, 2, 164],
@@ -38,7 +40,7 @@ const OWN = {[CANTILEVER]: ["thickness_um", "gap_um", "width_um", "length_um", "
   [BRIDGE]: ["thickness_um", "below_um", "width_um", "length_um", "stress_MPa", "tension_mN_per_m"], [STOPPER]: ["side_um", "other_um", "force_uN"]};
 const DRY = "dry", DRIEST = 0.345, airOf = (value) => value("humidity") < DRIEST ? DRY : value("humidity");
 const PAIR = ["known_skewness", "known_kurtosis"]; // a file states both or neither
-const OPEN = ["hurst", "corner_rad_per_um", "cutoff_rad_per_um", "skewness", "kurtosis"], byId = (id) => document.getElementById(id);
+const OPEN = OF_SURFACE.map(([key]) => key), byId = (id) => document.getElementById(id);
 
 function slider([key, words, low, high, step, start]) {
   if (Array.isArray(low)) {
@@ -85,7 +87,7 @@ function percent(part, touchdowns) {
   return `${part >= after(SCORES[0], touchdowns) ? "at least " : ""}${Number((100 * Math.min(part, NEARLY_ALL)).toPrecision(2))} %`;
 }
 function show() {
-  for (const [key, , low] of [...INPUTS, ...OF_MATERIAL]) if (!Array.isArray(low)) byId("of_" + key).textContent = byId(key).value;
+  for (const [key, , low] of [...INPUTS, ...OF_SURFACE, ...OF_MATERIAL]) if (!Array.isArray(low)) byId("of_" + key).textContent = byId(key).value;
   const given = stated();
   byId("of_humidity").textContent = airOf(given.value);
   for (const key of Object.values(OWN).flat()) byId(key).closest("label").hidden = !OWN[given.kind].includes(key);
@@ -93,6 +95,7 @@ function show() {
     byId(key).disabled = !(key in given.own);
     if (byId(key).disabled) byId("of_" + key).textContent = `as ${given.like}`;
   }
+  if (Object.keys(given.own).some((key) => OPEN.includes(key))) byId("surface").open = true;
   byId("yaml").textContent = yamlOf(given);
   try { write(answer(questionOf(given), TABLE), given); }
   catch (reason) { if (!(reason instanceof NotLearnt)) throw reason; refuse(reason); }
@@ -100,19 +103,30 @@ function show() {
 }
 function write(found, {kind, value}) {
   const [name, symbol, key] = WORDS[kind];
+  const isForce = kind === STOPPER, toUse = (end, side) => side === Number(isForce) ? `<strong>${end}</strong>` : end;
   const row = ({fraction, size, intervals}) => `<tr><th scope="row">1 in ${grouped(Math.round(1 / fraction))}</th><td>${micro(size)}</td>` +
-    ["90", "95"].map((key) => `<td>${outward(intervals[key]).join(" to ")}</td>`).join("") + "</tr>";
+    `<td>${outward(intervals["90"]).map(toUse).join(" to ")}</td><td data-confidence="95">${outward(intervals["95"]).join(" to ")}</td></tr>`;
   const caption = `<caption>${name === "length" ? "Length" : "Force"} at which a fraction sticks [${symbol}]</caption>`;
-  byId("table").innerHTML = `${caption}<thead><tr><th scope="col">stuck</th><th scope="col">${name}</th><th scope="col">90 %</th>` +
-    `<th scope="col">95 %</th></tr></thead><tbody>${found.rows.map(row).join("")}</tbody>`;
+  byId("table").innerHTML = `${caption}<thead><tr><th scope="col">stuck</th><th scope="col">estimate</th><th scope="col">90 %</th>` +
+    `<th scope="col" data-confidence="95">95 %</th></tr></thead><tbody>${found.rows.map(row).join("")}</tbody>`;
   byId("said").className = "said";
   const dried = found.life && found.life.dried, lowest = found.rows[2].intervals["90"][0], mustDry = dried && dried[0] < lowest;
   const [least, most] = outward(found.rows[2].intervals["90"]);
-  const safe = kind === STOPPER ? `at least ${most}` : mustDry ? `at most ${bound(dried[0] * 1e6)}, or it can collapse while ${LIQUID} dries` : `at most ${least}`;
+  const safe = isForce ? `at least ${most}` : mustDry ? `at most ${bound(dried[0] * 1e6)}, or it can collapse while ${LIQUID} dries` : `at most ${least}`;
   byId("said").textContent = `1 in 1000 sticks between ${least} and ${most} ${symbol} (90 %): use ${safe}.`;
+  byId("before").textContent = leftOut(kind, value);
+  const limit = isForce ? found.rows[2].intervals["90"][1] : mustDry ? dried[0] : lowest, size = value(key) * 1e-6;
+  const isUnsafe = isForce ? size < limit : size > limit, stated = `${value(key)} ${symbol}`;
+  byId("unsafe").textContent = isUnsafe ? `${stated} is ${isForce ? "less" : "longer"} than ${grouped(bound(limit * 1e6, isForce))}: not safe.` : "";
   const [middle, low, high] = found.stuck.map((part) => percent(part, value("touchdowns")));
-  byId("stuck").textContent = `At ${value(key)} ${symbol}, ${middle} stick (95 %: ${low} to ${high}).`;
+  byId("stuck").textContent = isUnsafe ? `Best estimate: ${middle} stick${high === middle ? "" : `, but up to ${high} (95 %)`}.`
+    : `At ${stated}, ${middle} stick (95 %: ${low} to ${high}).`;
   byId("life").textContent = found.life ? livesOf(found.life, value(key), kind).join("\n") : "";
+}
+function leftOut(kind, value) {
+  const parts = [[kind !== STOPPER && !value("tension_mN_per_m"), "drying"], [airOf(value) !== DRY, "fast separation"]];
+  const words = parts.filter(([isLeftOut]) => isLeftOut).map(([, word]) => word).join(" and ");
+  return `For exact inputs${words && `, before ${words}`}.`;
 }
 const LIQUID = "liquid", GRAVITY = 9.80665, FATES = ["stands", "may collapse", "collapses"];
 function bound(number, up = false) { // to three digits, not beyond it, of nine that do not show how it was computed
@@ -131,7 +145,7 @@ function refuse(reason) {
   byId("said").className = "said refused";
   byId("said").textContent = `Not known at once: ${reason.message}. A run computes it.`;
   byId("table").innerHTML = "<caption>No number</caption>";
-  byId("stuck").textContent = byId("life").textContent = "";
+  for (const id of ["unsafe", "before", "stuck", "life"]) byId(id).textContent = "";
 }
 function liquidsOf(kind, value) {
   const tension = value("tension_mN_per_m");
@@ -190,7 +204,9 @@ function bridge(value) {
   const clamps = [0, 270].map((x) => `<rect x="${x}" y="${top}" width="30" height="${75 - top}" fill="#57606a"/>`).join("");
   return `${clamps}<path d="M30 ${top} ${side(top, low)} V ${top + thickness} ${back(top + thickness, 75)} Z" fill="#0969da"/>`;
 }
-byId("form").innerHTML = `${INPUTS.map(slider).join("")}<details><summary>Material and temperature</summary>${OF_MATERIAL.map(slider).join("")}</details>`;
+const folded = (id, words, inputs) => `<details id="${id}"><summary>${words}</summary>${inputs.map(slider).join("")}</details>`;
+byId("form").innerHTML = INPUTS.map(slider).join("") + folded("surface", "What I know of the surface", OF_SURFACE) +
+  folded("material", "Material and temperature", OF_MATERIAL);
 byId("form").addEventListener("input", ({target}) => {
   if (PAIR.includes(target.id)) for (const id of PAIR) byId(id).checked = target.checked;
   show();

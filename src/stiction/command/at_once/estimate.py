@@ -287,10 +287,22 @@ def shown(estimate: Estimate) -> Iterator[str]:
         ends = "    ".join(f"{low:>5} to {high:<5}" for low, high in both)
         yield f"  1 in {1 / row.fraction:<10.0f}  {_number(row.size, asked):>8}     {ends}"
     if estimate.stuck is not None:
-        value, low, high = (_percent(fraction, asked.most) for fraction in estimate.stuck)
-        yield f"  At {life.as_stated(asked.size, asked.unit)} {symbol}, {value} stick (95 %: {low} to {high})."
+        yield f"  {_at_its_size(estimate, symbol)}"
     yield f"  {chosen(estimate)}."
     yield from (f"  {sentence}" for sentence in life.sentences(estimate, symbol))
+
+
+def _at_its_size(estimate, symbol):
+    """Fraction stuck at the stated size, after its verdict if it is beyond that to use."""
+    asked = estimate.question
+    value, low, high = (_percent(fraction, asked.most) for fraction in estimate.stuck)
+    size = f"{life.as_stated(asked.size, asked.unit)} {symbol}"
+    if not estimate.is_unsafe:
+        return f"At {size}, {value} stick (95 %: {low} to {high})."
+    beyond = "less" if estimate.is_force else "longer"
+    limit = life.bound(estimate.use_if_slow, asked.unit, estimate.is_force)
+    upper = "" if high == value else f", but up to {high} (95 %)"
+    return f"{size} is {beyond} than {limit}: not safe. Best estimate: {value} stick{upper}."
 
 
 def chosen(estimate: Estimate, subject: str = "") -> str:
