@@ -176,11 +176,11 @@ def unasked(answer: Answer) -> list[str]:
     return [f"{safe_size(limit.size, answer.sought)} {_unless(limit)}" for limit in limits]
 
 
-def _unless(limit):
+def _unless(stricter_size):
     """What a limit that nothing stated asks for is about, after its size."""
-    if limit.name.startswith(Name.COLLAPSE):
-        return f"if {limit.name.removeprefix(f'{Name.COLLAPSE}_')} dries on it"
-    return _UNLESS.get(limit.name, f"by its {limit.what.partition(':')[0]}")
+    if stricter_size.name.startswith(Name.COLLAPSE):
+        return f"if {stricter_size.name.removeprefix(f'{Name.COLLAPSE}_')} dries on it"
+    return _UNLESS.get(stricter_size.name, f"by its {stricter_size.what.partition(':')[0]}")
 
 
 def promise(answer: Answer) -> str:
