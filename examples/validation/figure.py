@@ -14,13 +14,17 @@ from stiction.report.style import OUTLINED, legend_outside, letter, panels, plai
 #: Colour and marker of a measured value inside and outside of its interval.
 INSIDE, OUTSIDE = ("#0072B2", "o"), ("#D55E00", "D")
 #: Width, of which a phone shows 7 points as 10 pixels, and height of a line of a name, of a bar and of an axis [in].
-WIDTH, LINE, BAR_HEIGHT, AROUND = 3.6, 0.1, 0.11, 0.55
+WIDTH, LINE, BAR_HEIGHT, AROUND = 3.6, 0.1, 0.11, 0.65
 #: Most characters of a line of a name.
 NAME = 74
 #: Ratio of the ends of an axis below which it has plain numbers.
 DECADE = 10
 #: Start of the names of experiments on crack lengths.
 CRACKS = "crack_lengths_"
+#: Side of the axis of crack lengths that is safe.
+LONGER = "\nright: longer than predicted, safer"
+#: Side of the axis of levels that is unsafe.
+STICKIER = "\nright: sticks more than predicted, unsafe (energies, forces)"
 #: Predicted interval.
 BAR = {"color": "0.6", "linewidth": 3, "solid_capstyle": "butt"}
 #: Text of a name.
@@ -88,10 +92,17 @@ def draw(panel, rows):
     if linear:
         panel.set_xlabel("value − median prediction [–]")
     else:
-        panel.set(xscale="log", xlabel="value / median prediction [–]")
+        panel.set(xscale="log", xlabel=f"value / median prediction [–]{side_of(rows)}")
         if np.divide(*panel.get_xlim()[::-1]) < DECADE:
             plain_log(panel.xaxis)
     panel.set(yticks=[], ylim=(bottom + 0.06, -0.04))
+
+
+def side_of(rows):
+    """What an axis of factors means to its right, if rows have one meaning."""
+    if not (len(rows) and (rows.kind == "level").all()):
+        return ""
+    return LONGER if rows.experiment.str.startswith(CRACKS).all() else STICKIER
 
 
 def on_axis(row, values, *, linear):

@@ -169,7 +169,10 @@ def test_densities_integrate_to_one_and_the_band_is_one_error_wide():
         rms = 1e9 * stage_estimate.rms(estimated())
         assert_allclose(p, density(z / rms) / rms, rtol=1e-6)
     (shown,) = (text.get_text() for text in axes.texts)
-    assert shown == f"$T^2$ = {float(estimated().goodness_chi2):.3g}, p = {float(estimated().goodness_p):.2g}"
+    assert (
+        shown
+        == f"$T^2$ = {float(estimated().goodness_chi2):.3g}, p = {float(estimated().goodness_p):.2g} (flag below 0.01)"
+    )
     assert "maximum entropy" not in {line.get_label() for line in panel(sheet("without density"), "density").lines}
 
 
@@ -196,6 +199,7 @@ def test_the_spectrum_is_grey_beyond_its_reach_and_shows_the_fit():
     assert np.all(np.diff(grey) > 0)
     error = 1e-6 * fit.corner * np.sqrt(fit.covariance[1, 1])
     assert axes.texts[0].get_text().startswith(f"corner {with_error(1e-6 * fit.corner, error)} rad/µm\n")
+    assert axes.texts[0].get_text().endswith(" (flag above 2)")
 
 
 def test_summits_of_scans_and_model_have_their_errors():

@@ -32,7 +32,7 @@ _FALLEN = 0.5
 #: Fewest rings of a fit.
 FEWEST_RINGS = 8
 #: Largest χ² per degree of freedom of a fit, unless chance exceeds it with this probability.
-_MISFIT, UNLIKELY = 2.0, 0.01
+MISFIT, UNLIKELY = 2.0, 0.01
 #: Starting points of the search: corners per decade of the range, and exponents of the power law.
 _CORNERS, _SLOPES = 12, -np.geomspace(0.5, 12, 16)
 #: Logarithm of the longest wave of the corner over that of the first ring. ASSUME: a corner or an exponent that no ring
@@ -120,7 +120,7 @@ class WhittleFit:
     @property
     def contradicted(self) -> bool:
         """Whether the spectrum is not of the form of Eq. (7)."""
-        return self.misfit > _MISFIT and chdtrc(self.freedom, self.chi2) < UNLIKELY
+        return self.misfit > MISFIT and chdtrc(self.freedom, self.chi2) < UNLIKELY
 
     @property
     def likely(self) -> bool:

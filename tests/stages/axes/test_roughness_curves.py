@@ -433,7 +433,11 @@ def test_a_map_of_a_stopper_has_positive_margins_where_the_restoring_force_excee
     points = [skewed(rms, value) for value in (0, -1) for rms in RANGE8]
     figure = figures_roughness.roughness_map(roughness.curve_or_map(points, "B2", "rms_nm", "skewness"))
     panel, bar = figure.axes
-    assert bar.get_ylabel() == "log$_{10}$ (restoring force / force needed)"
+    assert bar.get_ylabel() == "restoring force / force needed"
+    figure.draw_without_rendering()
+    ticks = zip(bar.get_yticks(), bar.get_yticklabels(), strict=True)
+    assert all(abs(np.log10(float(text.get_text())) - at) < 0.02 for at, text in ticks)
+    assert "sticks" in {text.get_text() for text in panel.texts}
     margins = panel.collections[0]
     np.testing.assert_allclose([margins.zmin, margins.zmax], 3 * np.log10([1 / 4, 2]))
 

@@ -8,6 +8,7 @@ from matplotlib.collections import Collection
 from matplotlib.colors import CenteredNorm
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
+from matplotlib.ticker import MultipleLocator
 
 from stiction.config.surfaces import process
 from stiction.contact.air import Air
@@ -60,6 +61,12 @@ _NOT_ENOUGH = "0.4"
 _FREE = 0.14
 #: Longest line of a label [characters].
 _LONGEST = 36
+#: Least part of a panel between its required value and each end, for words of two lines.
+_WORDS = 0.2
+#: Decades of a map from which each is named, in place of its half, too.
+_MANY = 4
+#: Start of the label of flat surfaces.
+_FLAT = "flat surfaces"
 
 
 # Curves
@@ -86,7 +93,7 @@ def roughness(dataset: xr.Dataset) -> Figure:
         panel.plot([], [], "o", color="0.3", fillstyle="none", label="estimate meets it, bar: two-sided 95 %")
         return _crossings(curve, shape)
 
-    return _curves(curve, _simulated, marks)
+    return _curves(curve, _simulated, marks, "curve {side}: releases")
 
 
 @styled
@@ -106,16 +113,19 @@ def devices(curve: xr.Dataset, recommended: xr.Dataset, device: str) -> Figure:
             _best(panel, settings)
         return []
 
-    return _curves(curve, _band, marks)
+    return _curves(curve, _band, marks, "whole band {side}: sure to release")
 
 
-def _curves(curve, draw, mark):
-    """Figure of a curve: ``draw`` draws it at a humidity, ``mark`` what is common to a panel, and returns labels."""
+def _curves(curve, draw, mark, releases):
+    """Figure of a curve: ``draw`` draws it at a humidity, ``mark`` what is common to a panel, and returns labels.
+
+    ``releases`` says on which side a device releases.
+    """
     shapes = _strictest_first(curve)
     figure, axes = panels(len(shapes), 1, (_WIDE, _HIGH * len(shapes)))
     sought, level = sought_of(curve), TO_UM * float(curve.required)
     side = "below" if sought.more_is_better else "above"
-    words = f"{sought.required} {sought.in_words(float(curve.required))}\ncurve {side}: releases"
+    words = f"{sought.required} {sought.in_words(float(curve.required))}\n{releases.format(side=side)}"
     for panel, shape in zip(axes[:, 0], shapes, strict=True):
         for humidity, colour in humidity_colours(curve.humidity.values.tolist()).items():
             draw(panel, curve.sel(humidity=humidity, shape=shape), colour)
@@ -125,11 +135,20 @@ def _curves(curve, draw, mark):
         _plain(panel.yaxis)
         _show(panel.xaxis, panel.set_xscale, curve, axes_of(curve)[0])
         panel.set_ylabel(f"{sought.label} at which\n{one_in(float(curve.share))} sticks [{sought.shown}]")
+        _make_room(panel, level)
         put(panel, level, [*labels, Label(words, "black")])
     letter(axes, _held_by(shapes))
-    lines_first = sorted(zip(*handles(*axes[:, 0]), strict=True), key=lambda line: isinstance(line[0], Collection))
+    entries = zip(*handles(*axes[:, 0]), strict=True)
+    lines_first = sorted(entries, key=lambda entry: (isinstance(entry[0], Collection), entry[1].startswith(_FLAT)))
     legend_outside(figure, tuple(zip(*lines_first, strict=True)), "lower", 2)
     return figure
+
+
+def _make_room(panel, level):
+    """Extend a logarithmic panel at its ends until words fit between them and a level."""
+    bottom, top = panel.get_ylim()
+    reach = _WORDS / (1 - _WORDS)
+    panel.set_ylim(min(bottom, level * (level / top) ** reach), max(top, level * (level / bottom) ** reach))
 
 
 def _strictest_first(curve):
@@ -151,7 +170,7 @@ def _simulated(panel, line, colour):
     panel.plot(x, estimate, ".-", color=colour, label=f"{Air(float(line.humidity)).words}, estimate and 95 % band")
     panel.plot(x, TO_UM * line.safe.values, "_", color=colour, markersize=8)
     if np.isfinite(line.bound.values).any():
-        style, label = END_STATES[shape].lines[1], f"flat surfaces, {END_STATES[shape].by}"
+        style, label = END_STATES[shape].lines[1], f"{_FLAT}, {END_STATES[shape].by}"
         panel.plot(x, TO_UM * line.bound.values, style, color=colour, linewidth=0.8, label=label)
     sure = [] if END_STATES[shape].only_if else axis.in_unit(ranges_of(line, float(line.humidity), shape))
     for ends in sure:
@@ -268,8 +287,7 @@ def roughness_map(data: xr.Dataset) -> Figure:
     for row, humidity in zip(axes, humidities, strict=True):
         for panel, shape in zip(row, shapes, strict=True):
             curve = data.sel(humidity=humidity, shape=shape).transpose("other", "roughness", ...)
-            label = f"log$_{{10}}$ ({sought_of(data).ratio})"
-            _filled(panel, data, (margins_of(curve), margins_of(curve, "safe")), label)
+            _filled(panel, data, (margins_of(curve), margins_of(curve, "safe")), sought_of(data).ratio)
             as_given = along.in_unit(float(data.given)), across.in_unit(float(data.other_given))
             panel.plot(*as_given, "k+", markersize=8, linestyle="none", label="surface as given")
     letter(axes, [f"{by}{Air(humidity).words}" for humidity in humidities for by in _held_by(shapes, ", ")])
@@ -281,7 +299,7 @@ def roughness_map(data: xr.Dataset) -> Figure:
 def process_map(margins: xr.Dataset, pairs: xr.Dataset) -> Figure:
     """Smallest margin of a device over two processes, with its lines of zero margin and the best pair."""
     figure, ((panel,),) = panels(1, 1, (1.5 * SINGLE, 3.4))
-    _filled(panel, margins, (pairs.margin.values, pairs.safe.values), "log$_{10}$ (smallest margin)", pairs)
+    _filled(panel, margins, (pairs.margin.values, pairs.safe.values), "smallest margin, as a factor", pairs)
     best, interval = pairs.best.values, pairs.best_interval.values
     across, up = np.abs(interval - best[:, None])[..., None]
     marks = {"fmt": "D", "color": "black", "markersize": 4, "label": "best, 95 % intervals", "clip_on": False}
@@ -296,7 +314,10 @@ def _filled(panel, computed, margins, label, shown=None):
     levels = np.ma.masked_invalid(margins[0] / np.log(10))
     if levels.count():
         colours = panel.contourf(x, y, levels, 12, cmap="RdBu", norm=CenteredNorm())
-        panel.figure.colorbar(colours, ax=panel, label=label)
+        bar = panel.figure.colorbar(colours, ax=panel, label=label)
+        bar.ax.yaxis.set_major_locator(MultipleLocator(0.5 if np.ptp(levels) < _MANY else 1))
+        bar.ax.yaxis.set_major_formatter(lambda level, _: f"{10**level:.2g}")
+        _name_sides(panel, *margins)
     _hatch(panel, x, y, *margins)
     lines = (("-", "estimate meets the requirement"), ("--", "with 95 % confidence too"))
     for values, (line, words) in zip(margins, lines, strict=True):
@@ -308,6 +329,17 @@ def _filled(panel, computed, margins, label, shown=None):
     panel.plot(*map(np.ravel, points), ".", color="0.3", markersize=2, label="computed")
     for side, scale, axis in zip((panel.xaxis, panel.yaxis), (panel.set_xscale, panel.set_yscale), axes, strict=True):
         _show(side, scale, computed, axis)
+
+
+def _name_sides(panel, margin, safe):
+    """Words in the corner with the largest margin if that is sure, and in the one with the smallest margin."""
+    for values, words in ((safe, "releases"), (-margin, "sticks")):
+        corners = np.nan_to_num(values[np.ix_([0, -1], [0, -1])], nan=-np.inf)
+        row, column = np.unravel_index(np.argmax(corners), corners.shape)
+        if corners[row, column] > 0:
+            sides = {"ha": ("left", "right")[column], "va": ("bottom", "top")[row]}
+            place = [(0.03, 0.97)[column], (0.03, 0.97)[row]]
+            panel.text(*place, words, transform=panel.transAxes, **sides, fontsize=7, path_effects=OUTLINED)
 
 
 def _hatch(panel, x, y, margin, safe):

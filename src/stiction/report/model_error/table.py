@@ -101,7 +101,10 @@ def _beam_change(case, variants):
 
 
 #: Labels of the panels of a pair. Longer cracks under full contact leave limits by summits too short.
-_SHOWN = "model error of $l_s$ [%]\n+: longer (safe side)", "deviation from published [%]"
+_SHOWN = (
+    "crack by full contact\nover the model's [%]\n+: model too short (safe)",
+    "crack length\nover published [%]\nbelow 0: shorter",
+)
 
 
 def table(*data) -> Table:
@@ -154,14 +157,19 @@ def _panels(column, rows):
     style = {"color": MODELS["NG"]["color"]}
     column[0].plot(rows.relative_humidity, rows.model_error_percent, linestyle=":", label="interpolated", **style)
     points = computed.relative_humidity, computed.model_error_percent, computed.model_error_se_percent
-    column[0].errorbar(*points, fmt="o", label="full contact ± standard error", **style)
+    column[0].errorbar(*points, fmt="o", label="full contact, correction ± standard error", **style)
     of_beams = rows.relative_humidity, rows.beams_change_percent, rows.beams_change_se_percent
     if rows.beams_change_percent.notna().any():
         column[0].errorbar(*of_beams, fmt="x", color="black", label="beams on corrected laws ± standard error")
     if len(column) > 1:
-        summits = {"linestyle": "--", "marker": "s", "markerfacecolor": "white", "label": "deviation, sum over summits"}
+        summits = {
+            "linestyle": "--",
+            "marker": "s",
+            "markerfacecolor": "white",
+            "label": "sum over summits, crack length",
+        }
         column[1].plot(compared.relative_humidity, compared.deviation_percent, **summits, **style)
-        full = {"linestyle": "-", "marker": "o", "label": "deviation, full contact"}
+        full = {"linestyle": "-", "marker": "o", "label": "full contact, crack length"}
         column[1].plot(compared.relative_humidity, compared.full_contact_deviation_percent, **full, **style)
         measured = (
             percent(compared.experiment_um / compared.published_um, 1),

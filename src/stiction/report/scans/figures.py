@@ -12,8 +12,10 @@ from matplotlib.figure import Figure
 
 from stiction.report.format import PER_UM2, TO_NM, TO_UM, UM, with_error
 from stiction.report.style import DOUBLE, MODELS, OUTLINED, figure_stage, letter, page_width, panels, styled
+from stiction.scans.flags import UNLIKELY
 from stiction.scans.levelling import Levelling, level
 from stiction.scans.scan import Scan
+from stiction.scans.whittle import MISFIT
 from stiction.stages.surfaces import estimate as stage_estimate
 from stiction.stages.surfaces import surface_flags
 
@@ -138,7 +140,8 @@ def _density(panel, estimate):
     if not np.isnan(stage_estimate.distance(estimate)):
         entropy = stage_estimate.density(estimate, "moments")(z) / rms
         panel.plot(rms * z, entropy, **_MODEL, label="maximum entropy")
-        text = rf"$T^2$ = {float(estimate.goodness_chi2):.3g}, p = {float(estimate.goodness_p):.2g}"
+        likely = f"p = {float(estimate.goodness_p):.2g} (flag below {UNLIKELY:g})"
+        text = rf"$T^2$ = {float(estimate.goodness_chi2):.3g}, {likely}"
         panel.text(0.5, 0.04, text, transform=panel.transAxes, ha="center", **_CORNER)
     panel.set(yscale="log", ylim=(largest / 10**_DECADES, _HEADROOM * largest), xlim=(-6 * rms, 6 * rms))
     panel.set(xlabel="height $z$ [nm]", ylabel="density $p_Z$ [nm$^{-1}$]")
@@ -173,7 +176,10 @@ def _fit(fit):
     """Parameters of Eq. (7) with their errors."""
     corner, (_, corner_error, slope_error) = fit.corner / TO_UM, fit.errors
     corner_text, slope_text = with_error(corner, corner * corner_error), with_error(fit.slope, slope_error)
-    return f"corner {corner_text} rad/µm\nslope {slope_text}\n" + rf"$\chi^2$/dof = {fit.chi2 / fit.freedom:.2g}"
+    return (
+        f"corner {corner_text} rad/µm\nslope {slope_text}\n"
+        + rf"$\chi^2$/dof = {fit.chi2 / fit.freedom:.2g} (flag above {MISFIT:g})"
+    )
 
 
 def _summits(panel, estimate):
