@@ -1,7 +1,8 @@
 """Contacts of the design with solids that attract each other more or less than polysilicon, beside its water.
 
-Tips, patches and bridges on summits, on the strips of some points of `stiction.estimate.learning.training`, `patches`
-and `bridges`, so that what changes is the attraction alone:
+Tips, patches and bridges on summits, on the strips of some points of `stiction.estimate.learning.training`,
+`stiction.estimate.learning.patches` and `stiction.estimate.learning.bridges`, so that what changes is the attraction
+alone:
 
     python -m stiction.estimate.learning.other_solids.attraction FOLDER [SET [FIRST LAST]]
 """

@@ -1,6 +1,7 @@
 """Rows about other solids: how their attraction changes lengths and forces, and errors of the estimate on them.
 
-From the files of `attraction` and `points` of this folder.
+From the files of `stiction.estimate.learning.other_solids.attraction` and
+`stiction.estimate.learning.other_solids.points`.
 """
 
 import math
