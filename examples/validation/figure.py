@@ -27,6 +27,8 @@ LONGER = "\nright: longer than predicted, safer"
 STICKIER = "\nright: sticks more than predicted, unsafe (energies, forces)"
 #: Predicted interval.
 BAR = {"color": "0.6", "linewidth": 3, "solid_capstyle": "butt"}
+#: Grounds of rows, one after the other.
+GROUNDS = "white", "0.96"
 #: Text of a name.
 NAMED = {"fontsize": 7, "linespacing": 1, "path_effects": OUTLINED}
 
@@ -82,7 +84,8 @@ def height(row):
 def draw(panel, rows):
     """Bar and measured value of each row below its name, in order: factors, or differences if all are linear."""
     linear, bottom = all_linear(rows), 0.0
-    for row in rows.itertuples():
+    for k, row in enumerate(rows.itertuples()):
+        panel.axhspan(bottom, bottom + height(row), color=GROUNDS[k % 2], linewidth=0, zorder=-1)
         panel.text(0.01, bottom + 0.01, label(row), va="top", **NAMED, transform=panel.get_yaxis_transform())
         bottom += height(row)
         place = bottom - BAR_HEIGHT / 2

@@ -87,13 +87,12 @@ def roughness(dataset: xr.Dataset) -> Figure:
         """The given roughness, what a dash means at any humidity, and the crossings in words."""
         panel.axvline(roughness_as_given, color="0.6", linestyle=":", label="as given")
         panel.plot([], [], "_", color="0.3", markersize=8, label="simulated limit")
-        panel.plot(
-            [], [], color="0.3", **_SURE, solid_capstyle="butt", label="sure: simulated limit meets it, one-sided 95 %"
-        )
+        sure = "sure, exact inputs: simulated limit meets it, 95 %"
+        panel.plot([], [], color="0.3", **_SURE, solid_capstyle="butt", label=sure)
         panel.plot([], [], "o", color="0.3", fillstyle="none", label="estimate meets it, bar: two-sided 95 %")
         return _crossings(curve, shape)
 
-    return _curves(curve, _simulated, marks, "curve {side}: releases")
+    return _curves(curve, _simulated, marks, "dashes {side} it release")
 
 
 @styled
@@ -113,7 +112,7 @@ def devices(curve: xr.Dataset, recommended: xr.Dataset, device: str) -> Figure:
             _best(panel, settings)
         return []
 
-    return _curves(curve, _band, marks, "whole band {side}: sure to release")
+    return _curves(curve, _band, marks, "sure where the whole outer band is {side}")
 
 
 def _curves(curve, draw, mark, releases):
@@ -125,18 +124,18 @@ def _curves(curve, draw, mark, releases):
     figure, axes = panels(len(shapes), 1, (_WIDE, _HIGH * len(shapes)))
     sought, level = sought_of(curve), TO_UM * float(curve.required)
     side = "below" if sought.more_is_better else "above"
-    words = f"{sought.required} {sought.in_words(float(curve.required))}\n{releases.format(side=side)}"
+    words = f"{sought.required} {sought.in_words(float(curve.required))}: {releases.format(side=side)}"
     for panel, shape in zip(axes[:, 0], shapes, strict=True):
         for humidity, colour in humidity_colours(curve.humidity.values.tolist()).items():
             draw(panel, curve.sel(humidity=humidity, shape=shape), colour)
-        panel.axhline(level, color="black", linewidth=0.8)
+        panel.axhline(level, color="black", linewidth=0.8, label=words)
         panel.set_yscale("log")
         labels = mark(panel, shape)
         _plain(panel.yaxis)
         _show(panel.xaxis, panel.set_xscale, curve, axes_of(curve)[0])
         panel.set_ylabel(f"{sought.label} at which\n{one_in(float(curve.share))} sticks [{sought.shown}]")
         _make_room(panel, level)
-        put(panel, level, [*labels, Label(words, "black")])
+        put(panel, level, labels)
     letter(axes, _held_by(shapes))
     entries = zip(*handles(*axes[:, 0]), strict=True)
     lines_first = sorted(entries, key=lambda entry: (isinstance(entry[0], Collection), entry[1].startswith(_FLAT)))
@@ -167,7 +166,9 @@ def _simulated(panel, line, colour):
     x, estimate = axis.in_unit(line.roughness.values), TO_UM * line.estimate.values
     reach = INTERVAL * TO_UM * line.error.values
     panel.fill_between(x, estimate - reach, estimate + reach, color=colour, alpha=0.2, linewidth=0)
-    panel.plot(x, estimate, ".-", color=colour, label=f"{Air(float(line.humidity)).words}, estimate and 95 % band")
+    nowhere = ": nowhere enough" * bool((margins_of(line) <= 0).all())
+    words = f"{Air(float(line.humidity)).words}, estimate and 95 % band{nowhere}"
+    panel.plot(x, estimate, ".-", color=colour, label=words)
     panel.plot(x, TO_UM * line.safe.values, "_", color=colour, markersize=8)
     if np.isfinite(line.bound.values).any():
         style, label = END_STATES[shape].lines[1], f"{_FLAT}, {END_STATES[shape].by}"
@@ -183,7 +184,7 @@ def _simulated(panel, line, colour):
 
 
 def _crossings(curve, shape):
-    """Labels of where the limit and the estimate meet the required value, and of the humidities where neither does.
+    """Labels of where the limit and the estimate meet the required value, and of humidities where all of it is enough.
 
     A place of the estimate has its 95 % interval, as its bar.
     """
@@ -197,12 +198,11 @@ def _crossings(curve, shape):
             text = f"{air}: {estimate}" if k else textwrap.fill(f"{air}: {sure}", _LONGEST) + f"\n{estimate}"
             labels.append(Label(text, colour, axis.in_unit(crossing)))
         margin = margins_of(curve.sel(humidity=humidity, shape=shape))
-        if not len(places) and np.isfinite(margin).any():
+        if not len(places) and (margin > 0).any():
             nearest = int(np.nanargmin(np.abs(margin)))
-            where = sure if margin[nearest] > 0 else "not in this range"
-            elsewhere.setdefault((nearest, where), {})[air] = colour
-    for (nearest, where), colours in elsewhere.items():
-        text = textwrap.fill(f"{', '.join(colours)}: {where}", _LONGEST)
+            elsewhere.setdefault((nearest, sure), {})[air] = colour
+    for (nearest, sure), colours in elsewhere.items():
+        text = textwrap.fill(f"{', '.join(colours)}: {sure}", _LONGEST)
         colour = next(iter(colours.values())) if len(colours) == 1 else "black"
         labels.append(Label(text, colour, axis.in_unit(curve.roughness.values[nearest])))
     return labels

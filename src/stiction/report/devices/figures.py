@@ -240,7 +240,9 @@ def _mark_sizes_to_build(panel, limits, answer, placed):
                 panel.plot([at, at], [height, limit], color=BUILD, linewidth=0.8)
             panel.plot(at, height, "D", color=BUILD, markersize=5, zorder=4, linestyle="", path_effects=_HALO, **style)
             number = bounding(size / sought.scale, 3, sought.more_is_better)
-            _write(panel, number, (at, height), (3, -2), color=BUILD, va="top", zorder=5)
+            is_last = at > np.mean(list(placed.values()))
+            apart, side = ((-3, -2), "right") if is_last else ((3, -2), "left")
+            _write(panel, number, (at, height), apart, color=BUILD, ha=side, va="top", zorder=5)
 
 
 #: White edge of a marker, so that it stands apart from curves.

@@ -103,8 +103,10 @@ def _beam_change(case, variants):
 #: Labels of the panels of a pair. Longer cracks under full contact leave limits by summits too short.
 _SHOWN = (
     "crack by full contact\nover the model's [%]\n+: model too short (safe)",
-    "crack length\nover published [%]\nbelow 0: shorter",
+    "crack length\nover published [%]\nstars below 0: unsafe",
 )
+#: What these panels show, after the name of the pair.
+_TITLES = ": full contact beside summits", ": both beside published and measured"
 
 
 def table(*data) -> Table:
@@ -147,7 +149,7 @@ def drawn(frame: pd.DataFrame) -> Figure:
         for panel, shows in zip(line[:, 0], _SHOWN, strict=False):
             panel.set_ylabel(shows)
     legend_outside(figure, handles(*columns.flat), "lower", 3)
-    letter_lines(lines, [f"pair {pair}" for pair in pairs])
+    letter_lines(lines, [f"pair {pair}" for pair in pairs], _TITLES[:count])
     return figure
 
 
