@@ -11,8 +11,10 @@ from matplotlib.text import Text
 
 from stiction.report.axes import figures
 from stiction.report.axes.labels import Label, put
-from stiction.report.axes.roughness import crossings_of, ranges_of, sure_in_short
+from stiction.report.axes.roughness import crossings_of, ranges_of, smoother_than_known, sure_in_short
 from stiction.report.style import BUILD, panels, png
+from stiction.run.stored_limits import as_text
+from stiction.stages.axes.requirement import SMOOTHER
 from stiction.stages.devices.opening import EITHER, S_SHAPE
 
 
@@ -238,3 +240,17 @@ def test_what_a_map_meets_without_confidence_is_hatched():
 def test_an_unknown_bound_of_a_map_is_no_confidence():
     _, (hatching,) = hatched(np.nan)
     assert hatching.get_paths()[0].contains_point((6.0, 0.0))
+
+
+@pytest.mark.parametrize("flagged", [(), (0,), (0, 1), (-1,)])
+def test_surfaces_smoother_than_those_with_full_contact_are_veiled(flagged):
+    found = rough()
+    places = 1e9 * found.roughness.values
+    flags = found.flagged.astype(object)
+    for k in flagged:
+        flags[{"roughness": k}] = as_text([SMOOTHER])
+    found = found.assign(flagged=flags, given=6e-9)
+    ends = sorted((places[flagged[0]], 6.0)) if flagged else None
+    assert smoother_than_known(found) == (ends and pytest.approx(tuple(ends)))
+    shown = "smoother: full contact unknown, unsafe" in entries(figures.roughness(found))
+    assert shown == bool(flagged)

@@ -15,7 +15,7 @@ from stiction.contact.air import Air
 from stiction.devices.risk import one_in
 from stiction.report.axes.axis import axes_of
 from stiction.report.axes.labels import Label, put
-from stiction.report.axes.roughness import crossings_of, ranges_of, sure_in_short
+from stiction.report.axes.roughness import crossings_of, ranges_of, smoother_than_known, sure_in_short
 from stiction.report.format import TO_NM, TO_UM
 from stiction.report.style import (
     BUILD,
@@ -86,6 +86,7 @@ def roughness(dataset: xr.Dataset) -> Figure:
     def marks(panel, shape):
         """The given roughness, what a dash means at any humidity, and the crossings in words."""
         panel.axvline(roughness_as_given, color="0.6", linestyle=":", label="as given")
+        _veil(panel, curve, color="0.9", zorder=-1)
         panel.plot([], [], "_", color="0.3", markersize=8, label="simulated limit")
         sure = "sure, exact inputs: simulated limit meets it, 95 %"
         panel.plot([], [], color="0.3", **_SURE, solid_capstyle="butt", label=sure)
@@ -93,6 +94,12 @@ def roughness(dataset: xr.Dataset) -> Figure:
         return _crossings(curve, shape)
 
     return _curves(curve, _simulated, marks, "dashes {side} it release")
+
+
+def _veil(panel, data, **style):
+    """Mark surfaces that are smoother than the smoothest one with full contact, where they are on the unsafe side."""
+    if ends := smoother_than_known(data):
+        panel.axvspan(*ends, linewidth=0, label="smoother: full contact unknown, unsafe", **style)
 
 
 @styled
@@ -290,6 +297,9 @@ def roughness_map(data: xr.Dataset) -> Figure:
             _filled(panel, data, (margins_of(curve), margins_of(curve, "safe")), sought_of(data).ratio)
             as_given = along.in_unit(float(data.given)), across.in_unit(float(data.other_given))
             panel.plot(*as_given, "k+", markersize=8, linestyle="none", label="surface as given")
+            ends = panel.get_xlim()
+            _veil(panel, data, color="0.85", alpha=0.6)
+            panel.set_xlim(ends)
     letter(axes, [f"{by}{Air(humidity).words}" for humidity in humidities for by in _held_by(shapes, ", ")])
     legend_outside(figure, handles(*axes.flat), "lower", 2)
     return figure

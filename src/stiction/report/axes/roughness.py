@@ -6,7 +6,8 @@ import xarray as xr
 from stiction.devices.risk import VERIFIED, one_in, samples_for
 from stiction.report.axes.axis import Axis, axes_of, notes, subjects
 from stiction.report.format import UM, airs, fraction_with_band
-from stiction.stages.axes.requirement import sought_of
+from stiction.run.stored_limits import of_text
+from stiction.stages.axes.requirement import SMOOTHER, sought_of
 from stiction.stages.axes.roughness import KURTOSIS, OF_COPIES, curves_of
 from stiction.stages.devices.end_states import END_STATES
 
@@ -140,6 +141,22 @@ def _stuck_as_given(curve, humidity, shape):
 def crossings_of(curve: xr.Dataset, humidity: float, shape: str) -> xr.Dataset:
     """Crossings of a curve with its required value, at a humidity and against one end state."""
     return _rows(curve, "crossing", humidity, shape)
+
+
+def smoother_than_known(data: xr.Dataset) -> tuple[float, float] | None:
+    """Ends of the roughness in its unit of which full contact is unknown on the unsafe side, none if it is known.
+
+    They lead from the smoothest surface to the given one.
+    """
+    over_others = [dim for dim in data.flagged.dims if dim != "roughness"]
+    flags = xr.apply_ufunc(np.vectorize(lambda flag: SMOOTHER in of_text(flag), otypes=[bool]), data.flagged)
+    places = data.roughness.values[flags.any(over_others).values]
+    if not places.size:
+        return None
+    given, in_unit = float(data.given), axes_of(data)[0].in_unit
+    furthest = places[np.argmax(np.abs(places - given))]
+    low, high = sorted((float(in_unit(furthest)), float(in_unit(given))))
+    return low, high
 
 
 def ranges_of(curve: xr.Dataset, humidity: float, shape: str) -> np.ndarray:

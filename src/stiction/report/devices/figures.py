@@ -191,15 +191,14 @@ def chart(
         has_its_gap = np.isclose(gap, own_gap, rtol=1e-6, atol=0)
         is_its_own = has_its_gap & np.isclose(curves.thickness, thickness, rtol=1e-6, atol=0)
         _thicknesses(panel, curves, shape, placed[name], is_its_own)
-        if END_STATES[shape].only_if:
-            style = {"xycoords": "axes fraction", "ha": "right", "va": "top", "fontsize": 7}
-            panel.annotate("no size to build here", (0.98, 0.98), **style)
-        elif has_its_gap:
+        if has_its_gap and not END_STATES[shape].only_if:
             _mark_sizes_to_build(panel, _limits(curves.isel(thickness=is_its_own)), answer, placed[name])
         low, high = panel.dataLim.intervaly
         panel.set(xlabel="relative humidity [–]", ylabel=_OF_CHART, ylim=(0.95 * low, high + _ROOM * (high - low)))
         humidity_axis(panel, placed[name])
-        _name_sides(panel, curves, placed[name])
+        only = "\nno size to build here" * bool(END_STATES[shape].only_if)
+        style = {"xycoords": "axes fraction", "ha": "right", "va": "top", "fontsize": 7, "path_effects": OUTLINED}
+        panel.annotate(f"above each line: more stick{only}", (0.98, 0.98), **style)
         marks = [
             f" ({name})" * int(own) + _marks_of_warnings(numbers.get((name, thickness, gap, shape), ()))
             for thickness, own in zip(curves.thickness.values, is_its_own, strict=True)
@@ -247,18 +246,6 @@ def _mark_sizes_to_build(panel, limits, answer, placed):
 
 #: White edge of a marker, so that it stands apart from curves.
 _HALO = [withStroke(linewidth=3, foreground="white")]
-
-
-def _name_sides(panel, curves, placed):
-    """Name both sides of a curve at the middle point of the longest one of a panel."""
-    curve = _limits(curves).max("thickness").dropna("relative_humidity")
-    if not curve.size:
-        return
-    k = curve.size // 2
-    point = placed[float(curve.relative_humidity[k])], float(curve[k])
-    above, below = ("left", "right") if curve[0] >= curve[-1] else ("right", "left")
-    _write(panel, "above: more stick", point, (0, 4), ha=above, va="bottom", style="italic")
-    _write(panel, "below: fewer stick", point, (0, -4), ha=below, va="top", style="italic")
 
 
 def _write(panel, text, point, apart, **style):
