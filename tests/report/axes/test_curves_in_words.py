@@ -252,5 +252,5 @@ def test_surfaces_smoother_than_those_with_full_contact_are_veiled(flagged):
     found = found.assign(flagged=flags, given=6e-9)
     ends = sorted((places[flagged[0]], 6.0)) if flagged else None
     assert smoother_than_known(found) == (ends and pytest.approx(tuple(ends)))
-    shown = "smoother: full contact unknown, unsafe" in entries(figures.roughness(found))
+    shown = "full contact unknown here, unsafe" in entries(figures.roughness(found))
     assert shown == bool(flagged)

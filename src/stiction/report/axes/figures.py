@@ -99,7 +99,7 @@ def roughness(dataset: xr.Dataset) -> Figure:
 def _veil(panel, data, **style):
     """Mark surfaces that are smoother than the smoothest one with full contact, where they are on the unsafe side."""
     if ends := smoother_than_known(data):
-        panel.axvspan(*ends, linewidth=0, label="smoother: full contact unknown, unsafe", **style)
+        panel.axvspan(*ends, linewidth=0, label="full contact unknown here, unsafe", **style)
 
 
 @styled
