@@ -148,7 +148,7 @@ def drawn(frame: pd.DataFrame) -> Figure:
     for line in lines:
         for panel, shows in zip(line[:, 0], _SHOWN, strict=False):
             panel.set_ylabel(shows)
-    legend_outside(figure, handles(*columns.flat), "lower", 3)
+    legend_outside(figure, handles(*columns.flat), "upper", 3)
     letter_lines(lines, [f"pair {pair}" for pair in pairs], _TITLES[:count])
     return figure
 
@@ -162,7 +162,7 @@ def _panels(column, rows):
     column[0].errorbar(*points, fmt="o", label="full contact, correction ± standard error", **style)
     of_beams = rows.relative_humidity, rows.beams_change_percent, rows.beams_change_se_percent
     if rows.beams_change_percent.notna().any():
-        column[0].errorbar(*of_beams, fmt="x", color="black", label="beams on corrected laws ± standard error")
+        column[0].errorbar(*of_beams, fmt="x", color="black", label="beams computed with full contact ± standard error")
     if len(column) > 1:
         summits = {
             "linestyle": "--",
