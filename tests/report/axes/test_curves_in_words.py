@@ -254,3 +254,17 @@ def test_surfaces_smoother_than_those_with_full_contact_are_veiled(flagged):
     assert smoother_than_known(found) == (ends and pytest.approx(tuple(ends)))
     shown = "full contact unknown here, unsafe" in entries(figures.roughness(found))
     assert shown == bool(flagged)
+
+
+@pytest.mark.parametrize(
+    ("flagged", "words"), [((), "sure from 4.57 nm"), ((0,), "sure from 6 nm"), ((-1,), "sure from")]
+)
+def test_nothing_is_sure_beyond_the_given_surface_where_full_contact_is_unknown(flagged, words):
+    found = rough()
+    flags = found.flagged.astype(object)
+    for k in flagged:
+        flags[{"roughness": k}] = as_text([SMOOTHER])
+    shown = texts(figures.roughness(found.assign(flagged=flags, given=6e-9)))
+    said = next(text for text in shown if text.startswith("RH 0.6"))
+    assert words in said
+    assert ("to 6 nm" in said) == (flagged == (-1,)), "flags are at the other side"

@@ -148,21 +148,32 @@ def smoother_than_known(data: xr.Dataset) -> tuple[float, float] | None:
 
     They lead from the smoothest surface to the given one.
     """
-    over_others = [dim for dim in data.flagged.dims if dim != "roughness"]
-    flags = xr.apply_ufunc(np.vectorize(lambda flag: SMOOTHER in of_text(flag), otypes=[bool]), data.flagged)
-    places = data.roughness.values[flags.any(over_others).values]
-    if not places.size:
+    if (furthest := _smoothest_unknown(data)) is None:
         return None
-    given, in_unit = float(data.given), axes_of(data)[0].in_unit
-    furthest = places[np.argmax(np.abs(places - given))]
-    low, high = sorted((float(in_unit(furthest)), float(in_unit(given))))
+    low, high = sorted(map(float, map(axes_of(data)[0].in_unit, (furthest, float(data.given)))))
     return low, high
 
 
+def _smoothest_unknown(data):
+    """Roughness of the smoothest surface whose full contact is unknown on the unsafe side, none if all is known."""
+    over_others = [dim for dim in data.flagged.dims if dim != "roughness"]
+    flags = xr.apply_ufunc(np.vectorize(lambda flag: SMOOTHER in of_text(flag), otypes=[bool]), data.flagged)
+    places = data.roughness.values[flags.any(over_others).values]
+    return places[np.argmax(np.abs(places - float(data.given)))] if places.size else None
+
+
 def ranges_of(curve: xr.Dataset, humidity: float, shape: str) -> np.ndarray:
-    """Ranges of a curve in which its simulated limit meets the requirement, as `crossings_of`, (n, 2)."""
+    """Ranges of a curve in which its simulated limit meets the requirement, as `crossings_of`, (n, 2).
+
+    They end at the given surface where full contact of smoother ones is unknown on the unsafe side.
+    """
     rows = _rows(curve, "range", humidity, shape)
-    return np.stack([rows.range_low, rows.range_high], axis=-1)
+    ranges = np.stack([rows.range_low, rows.range_high], axis=-1)
+    if (unknown := _smoothest_unknown(curve)) is None:
+        return ranges
+    given = float(curve.given)
+    known = np.clip(ranges, *((given, None) if unknown < given else (None, given)))
+    return known[(ranges >= given).any(axis=1) if unknown < given else (ranges <= given).any(axis=1)]
 
 
 def sure_in_short(curve: xr.Dataset, humidity: float, shape: str) -> str:
