@@ -123,6 +123,7 @@ def lower_to(decimals: int) -> Callable[[float], str]:
     step = Decimal(1).scaleb(-decimals)
 
     def text(value):
+        """Text of one bound."""
         if not math.isfinite(value):
             return number(value, "g")
         return str(_as_computed(value).quantize(step, ROUND_FLOOR))

@@ -171,9 +171,9 @@ def ranges_of(curve: xr.Dataset, humidity: float, shape: str) -> np.ndarray:
     ranges = np.stack([rows.range_low, rows.range_high], axis=-1)
     if (unknown := _smoothest_unknown(curve)) is None:
         return ranges
-    given = float(curve.given)
-    known = np.clip(ranges, *((given, None) if unknown < given else (None, given)))
-    return known[(ranges >= given).any(axis=1) if unknown < given else (ranges <= given).any(axis=1)]
+    end = float(curve.given)
+    clipped = np.clip(ranges, *((end, None) if unknown < end else (None, end)))
+    return clipped[(ranges >= end).any(axis=1) if unknown < end else (ranges <= end).any(axis=1)]
 
 
 def sure_in_short(curve: xr.Dataset, humidity: float, shape: str) -> str:

@@ -200,8 +200,8 @@ def chart(
         style = {"xycoords": "axes fraction", "ha": "right", "va": "top", "fontsize": 7, "path_effects": OUTLINED}
         panel.annotate(f"above each line: more stick{only}", (0.98, 0.98), **style)
         marks = [
-            f" ({name})" * int(own) + _marks_of_warnings(numbers.get((name, thickness, gap, shape), ()))
-            for thickness, own in zip(curves.thickness.values, is_its_own, strict=True)
+            f" ({name})" * int(is_own) + _marks_of_warnings(numbers.get((name, thickness, gap, shape), ()))
+            for thickness, is_own in zip(curves.thickness.values, is_its_own, strict=True)
         ]
         _name_thicknesses(panel, curves, marks)
     titles = [f"{name}, gap {TO_UM * gap:g} µm, {END_STATES[shape].title}" for name, gap, shape in subjects]
