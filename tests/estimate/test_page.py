@@ -94,7 +94,8 @@ def bridge(rng):
 
 def stopper(rng):
     """Numbers of a random stopper, of which a few are too large."""
-    return {"sides": rng.uniform(1e-6, 6.3e-6, 2).tolist(), "force": 10 ** rng.uniform(-6, -3)}
+    device = {"sides": rng.uniform(1e-6, 6.3e-6, 2).tolist(), "force": 10 ** rng.uniform(-6, -3)}
+    return device | {"added": float(rng.choice([0, 10 ** rng.uniform(-7, -4)]))}  # more than many forces
 
 
 def in_python(question, table):

@@ -21,7 +21,7 @@ from stiction.estimate.length import Impossible, LengthRow, Lengths, NotLearnt, 
 from stiction.estimate.question import Question
 from stiction.estimate.state import THINNEST, film
 from stiction.estimate.table import Surrogate
-from stiction.estimate.voltage import Driven
+from stiction.estimate.voltage import Driven, Pulled
 
 #: Fractions of stuck devices in the answer.
 FRACTIONS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
@@ -141,7 +141,7 @@ class LengthsInAir:
     stated: Lengths
     members: tuple[Lengths, ...]  #: on typical surfaces in place of a partly assumed one
     averaged: bool  #: as of `stiction.estimate.question.Question`
-    closed: Driven | Stretched  #: form of a length from the bare one, without voltage or stress
+    closed: Driven | Pulled | Stretched  #: form of a length from the bare one, without voltage or stress
 
     def centre(self, score: float) -> tuple[float, float]:
         """Mean and scatter of the logarithm of a length [m] over surfaces like those that are assumed."""

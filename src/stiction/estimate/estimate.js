@@ -167,7 +167,7 @@ function dryReciprocals(patch, {forces, full, coordinates: names}) {
   const scatter = (found.logarithms[0] - found.logarithms[2]) / 2;
   return scattered(found, power, -change.ratio - (1 - power ** 2) * scatter ** 2 / 2);
 }
-function ofStopper({sides, force, solids = POLYSILICON}, {water: ofWater, stoppers, dry}) {
+function ofStopper({sides, force, added, solids = POLYSILICON}, {water: ofWater, stoppers, dry}) {
   const [one, other] = sides, {modulus} = solids;
   const areaOf = ({sides: [low, high]}) => {
     if (!sides.every((side) => low * 1e-6 <= side && side <= high * 1e-6)) throw new NotLearnt(`sides of a stopper must be from ${low} to ${high} µm`);
@@ -177,7 +177,7 @@ function ofStopper({sides, force, solids = POLYSILICON}, {water: ofWater, stoppe
     lengths: (heights, water) =>
       reciprocals({heights, film: water, area: areaOf(stoppers), modulus, attraction: attractionOf(solids, water, ofWater)}, stoppers),
     inDryAir: (heights) => dryReciprocals({heights, constant: solids.inDryAir, area: areaOf(dry.stoppers), modulus}, dry.stoppers),
-    closed: drivenBy(0), errors: (part) => part.stoppers, stated: force && 1 / force,
+    closed: pulledBy(added || 0), errors: (part) => part.stoppers, stated: force && 1 / force,
     row: ({length, intervals}) => ({size: 1 / length, intervals: Object.fromEntries(Object.entries(intervals).map(([key, [low, high]]) => [key, [1 / high, 1 / low]]))}),
   };
 }
@@ -404,6 +404,7 @@ function withoutVoltage(length, drive) {
   return cube > 0 ? cube ** (-1 / 3) : Infinity;
 }
 const drivenBy = (drive) => ({length: (bare) => drive ? atVoltage(bare, drive) : bare, bare: (length) => withoutVoltage(length, drive)});
+const pulledBy = (added) => ({length: (bare) => bare / (1 + added * bare), bare: (length) => added * length < 1 ? length / (1 - added * length) : Infinity});
 
 // answer
 const FRACTIONS = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6], STUDENT = {90: 2.353363, 95: 3.182446};

@@ -21,7 +21,7 @@ from stiction.estimate.length import LengthRow, Lengths, NotLearnt, falling, kno
 from stiction.estimate.state import OF_PATCHES, Film, PatchState
 from stiction.estimate.statistics import Heights
 from stiction.estimate.table import Surrogate
-from stiction.estimate.voltage import Driven
+from stiction.estimate.voltage import Pulled
 
 
 @dataclass(frozen=True)
@@ -64,6 +64,7 @@ class Stopper(Asked):
 
     sides: tuple[float, float]  #: of its area [m]
     force: float | None = None  #: that restores it [N]
+    added: float = 0.0  #: force that a voltage adds [N]
     unit: ClassVar[str] = "uN"  #: of its size, a force
 
     @property
@@ -77,9 +78,9 @@ class Stopper(Asked):
         return None if self.force is None else 1 / self.force
 
     @property
-    def closed(self) -> Driven:
-        """Closed form of its voltage, which it has not."""
-        return Driven(0.0)
+    def closed(self) -> Pulled:
+        """Closed form of its forces at its voltage."""
+        return Pulled(self.added)
 
     @property
     def life(self) -> StopperLife:

@@ -21,7 +21,7 @@ from stiction.estimate.state import Film, TipState, stiffness_of
 from stiction.estimate.statistics import Heights, moments_of, slope_of
 from stiction.estimate.table import Surrogate
 from stiction.estimate.voltage import KEYS as OF_VOLTAGES
-from stiction.estimate.voltage import Driven, drive_of, energy_of
+from stiction.estimate.voltage import Driven, drive_of, energy_of, tension_of
 
 Library = Mapping[str, Mapping[str, Any]]
 
@@ -34,7 +34,7 @@ OF_DEVICES += ("shock_g", *OF_VOLTAGES)
 OF_BRIDGES = ("kind", "pair", "length_um", "thickness_um", "gap_um", "width_um", "residual_stress_MPa")
 OF_BRIDGES += ("humidities", "touchdowns", "shock_g")
 OF_STOPPERS = ("kind", "pair", "contact_um", "restoring_force_uN", "stiffness_N_per_m", "gap_um", "mass_ng")
-OF_STOPPERS += ("humidities", "touchdowns", "electrode", "shock_g")
+OF_STOPPERS += ("humidities", "touchdowns", "electrode", "shock_g", *OF_VOLTAGES)
 #: Keys of a material, of which the last two change no length or force.
 OF_MATERIALS = ("young_modulus_GPa", "poisson_ratio", "hamaker_constant_zJ", "contact_angle_deg")
 OF_MATERIALS += ("hardness_GPa", "density_kg_per_m3")
@@ -398,7 +398,8 @@ def of_area(name: str, device: Mapping[str, Any], sides: Sequence, **more: Any) 
     kind = KINDS.get(device.get("kind"))
     stated = kind.stated(device) if kind and any(set(way.keys) <= device.keys() for way in kind.ways) else device
     force = to_si(stated["restoring_force_uN"], "uN") if "restoring_force_uN" in stated else None
-    return Stopper(name, surfaces, members, airs_of(device), area, force, **_often(device), **more)
+    added = tension_of(device) * math.prod(area)
+    return Stopper(name, surfaces, members, airs_of(device), area, force, added, **_often(device), **more)
 
 
 def of_middle(name: str, device: Mapping[str, Any], sides: Sequence, **more: Any) -> Bridge:
