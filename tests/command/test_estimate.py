@@ -244,10 +244,10 @@ OF_STOPPER = ["--rms=3", "--like=B2", "--rh=0.6", "--contact", "3", "2", "--forc
 WITH_VOLTAGE = [*OPTIONS, "--voltage=5", "--dielectric", "100", "3.9", "--skewness=-0.5", "--kurtosis=4"]
 
 
-PULLED = [*OF_STOPPER, "--voltage=20", "--dielectric", "100", "3.9"]
+PULLED, DRIVEN = ([*words, "--voltage=20", "--dielectric", "100", "3.9"] for words in (OF_STOPPER, OF_BRIDGE))
 
 
-@pytest.mark.parametrize("words", [OPTIONS, OF_BRIDGE, OF_STOPPER, WITH_VOLTAGE, PULLED])
+@pytest.mark.parametrize("words", [OPTIONS, OF_BRIDGE, OF_STOPPER, WITH_VOLTAGE, PULLED, DRIVEN])
 def test_the_printed_file_is_valid_and_has_the_same_estimate(tmp_path, capsys, words):
     lines = said(capsys, *words)[1]
     (tmp_path / "mine.yaml").write_text("\n".join(lines[lines.index("run: {pairs: [mine], studies: []}") :]))
@@ -400,7 +400,7 @@ def test_a_file_takes_no_options_and_must_have_devices(tmp_path, capsys):
         (["--contact", "3", "3", "--stress=2"], "--stress is for bridges alone"),
         (["--thickness=2", "--gap=20", "--force=5"], "--force is for stoppers alone"),
         (["--thickness=2", "--gap=2", "--stress=50", "--force=5"], "--force is for stoppers alone"),
-        (["--thickness=2", "--gap=2", "--stress=50", "--voltage=5"], "--voltage is for cantilevers and stoppers alone"),
+        (["--thickness=2", "--gap=2", "--stress=50", "--voltage=5"], "--dielectric is missing"),
         (["--thickness=2", "--gap=2", "--stress=-5"], "--stress must be 0 or above, got -5.0"),
     ],
 )

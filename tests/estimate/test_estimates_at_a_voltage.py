@@ -15,10 +15,13 @@ from stiction.config.cases import Case, case_id
 from stiction.config.units import in_si
 from stiction.contact.correction import ElasticChange
 from stiction.contact.voltage import Capacitor, Dielectric
+from stiction.devices import bridges
 from stiction.estimate.answer import answer, in_one_air
+from stiction.estimate.bridge import Bridge, Stretched, known_patch, shorter
 from stiction.estimate.force import Stopper
 from stiction.estimate.learning import patches
 from stiction.estimate.learning.training import HUMIDITIES, SETS, air_of, surfaces_of, water_of
+from stiction.estimate.length import Lengths, NotLearnt
 from stiction.estimate.question import Question, questions
 from stiction.estimate.state import PatchState, film, stiffness_of
 from stiction.estimate.statistics import heights_of, of_pair
@@ -31,6 +34,7 @@ from stiction.stages.contact import contact, curves
 from stiction.stages.contact.changes.patches import GROUND
 from stiction.stages.contact.pairs import Settings
 from stiction.stages.devices.contact_names import patch_of
+from stiction.stages.devices.opening import BEAMS
 from stiction.stages.life.answers import HOLD, LifeRow, Name
 
 MODULUS = 164e9
@@ -197,3 +201,111 @@ def test_drawn_patches_need_less_than_the_end_to_use(number):
     ]
     assert np.quantile(of_run, 0.99) < uses[0]
     assert uses[0] - uses[1] == pytest.approx(area * tension_of(device), rel=1e-9), "of which the voltage is a part"
+
+
+# Bridges
+
+BRIDGE = {"kind": "bridge", "pair": "b", "thickness_um": 2, "gap_um": 2, "width_um": 30, "residual_stress_MPa": 50}
+BRIDGE |= {"humidities": [0.67]}
+
+
+def of_bridge(**keys):
+    """Question about the bridge with more keys."""
+    question = questions({"devices": {"R": BRIDGE | keys}}, content())["R"]
+    assert isinstance(question, Bridge), question
+    return question
+
+
+def drawn_bridges(number):
+    """Stresses [Pa], halves and closed forms of random bridges, laws (e, f) and what random voltages add to them."""
+    rng = np.random.default_rng(5)
+    for _ in range(number):
+        thickness, gap, stress = 10 ** rng.uniform(-6.1, -5.3), 10 ** rng.uniform(-6.5, -5.3), rng.uniform(0, 2e8)
+        half = bridges.half_of_bridge(Beam(1e-3, 30e-6, thickness, MODULUS, gap, 1), stress)
+        pull, tension = 10 ** rng.uniform([5.5, 4], [7.5, 7])
+        law = np.array([10 ** rng.uniform(-9, -8) * pull, pull])
+        yield half, Stretched.of(stress, thickness, MODULUS), law, np.array([tension * 25e-9, tension])
+
+
+def held_by(half, law):
+    """Length without stress that a law (e, f) holds in the closed form."""
+    return (768 * (MODULUS * half.thickness**3) ** 2 * half.gap**3 / law.prod()) ** 0.125
+
+
+def balance(length, half, law):
+    """Curvature and square of the pull of the arms of a bridge over what a law (e, f) balances."""
+    force, curvature = bridges.pull(length, half)
+    return curvature * force**2 / (8 * half.width**2 * law.prod())
+
+
+def test_200_bridges_balance_their_arms_at_a_voltage():
+    for half, stretched, law, added in drawn_bridges(200):
+        driven = replace(stretched, factor=shorter(*law, *added))
+        bare = held_by(half, law)
+        length = driven.length(bare)
+        assert balance(length, half, law + added) == pytest.approx(1, rel=1e-9)
+        assert balance(length, half, law + [added[0], 0]) > 1 + 1e-6, "the control: energy alone"
+        assert driven.bare(length) == pytest.approx(bare, rel=1e-9)
+
+
+def test_lengths_shrink_as_those_of_a_run_by_the_same_laws():
+    """Up to the effect of the width in contact, which a run has, too."""
+    ratios = []
+    for half, stretched, law, added in drawn_bridges(200):
+        length, shrunk = (bridges.least_length(*each, half) for each in (law, law + added))
+        of_run = BEAMS["bridge"].at_voltage(np.array([1.0]), law, law + added, half).item()
+        found = replace(stretched, factor=shorter(*law, *added)).length(stretched.bare(length))
+        ratios.append(found / length / of_run)
+    assert 0.99 < min(ratios) < max(ratios) < 1.035  # the most where a voltage of many volts leaves a third
+    assert np.quantile(ratios, [0.05, 0.5, 0.95]) == pytest.approx([1, 1.002, 1.013], abs=2e-3)
+
+
+def test_all_lengths_of_a_bridge_shrink_by_the_factor_of_its_own_stopper():
+    without, driven = of_bridge(), of_bridge(voltage_V=10, dielectric=OXIDE)
+    rows = [(answer(each, *known()).rows, each) for each in (without, driven)]
+    beam, water = Beam(1e-3, 30e-6, 2e-6, MODULUS, 2e-6, 1), film(0.67, 300.0, 2.0)
+    flooded = np.array([water.energy, water.energy / water.height])
+    area = bridges.pull(held_by(beam, flooded), beam)[0] / (2 * flooded[1])
+    patch = Stopper("", without.surfaces, ({}, {}), (0.67,), (area**0.5, area**0.5))
+    (force,) = in_one_air(patch, 0.67, [0.5], *known())
+    (half,) = in_one_air(without, 0.67, [0.5], *known())
+    pull = force.force / area
+    energy = 768 * (MODULUS * 2e-6**3) ** 2 * 2e-6**3 / without.closed.bare(half.length) ** 8 / pull
+    capacitor = Capacitor(Dielectric(100e-9, 3.9), 10.0)
+    expected = shorter(energy, pull, holding.energy_of_voltage(capacitor, 2e-6), capacitor.largest_pressure)
+    assert 0.5 < expected < 0.9
+    for bare, row in zip(*(of_rows for of_rows, _ in rows), strict=True):
+        both = [(bare.length, row.length), *zip(bare.intervals["95"], row.intervals["95"], strict=True)]
+        for length, shrunk in both:
+            ratio = without.closed.bare(shrunk) / without.closed.bare(length)
+            assert ratio == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize(("area", "learnt"), [(0.5e-12, 1e-12), (9e-12, 9e-12), (144e-12, 36e-12)])
+def test_a_middle_counts_as_the_nearest_area_that_was_learnt(area, learnt):
+    patch = PatchState(of_pair(SETS["control"].all[0].sides), film(0.67, 300.0, 2.0), area, MODULUS)
+    assert known_patch(patch, content()["stoppers"]).area == pytest.approx(learnt, rel=1e-9)
+
+
+def test_without_a_voltage_a_bridge_is_as_it_was():
+    bare = answer(of_bridge(length_um=180), *known())
+    for volts in (0, 1e-6):
+        found = answer(of_bridge(length_um=180, voltage_V=volts, dielectric=OXIDE), *known())
+        assert found.chosen.length == pytest.approx(bare.chosen.length, rel=1e-9)
+        assert found.stuck == pytest.approx(bare.stuck, rel=1e-6)
+    driven = answer(of_bridge(length_um=180, voltage_V=3, dielectric=OXIDE), *known())
+    assert driven.stuck[0] > 1.1 * bare.stuck[0], "the control"
+
+
+def test_the_surface_that_a_voltage_shortens_most_decides():
+    asked = of_bridge(voltage_V=10, dielectric=OXIDE)
+    state, rough = asked.surfaces[0] + asked.surfaces[1], of_pair(SETS["control"].all[0].sides)
+    found = {each: Lengths((math.log(2e-4), -9.0, -9.5), 0.1) for each in (state, rough)}
+    factors = [asked.closed_on({each: found[each]}, 0.67, content()).factor for each in found]
+    assert abs(factors[0] - factors[1]) > 1e-3
+    assert asked.closed_on(found, 0.67, content()).factor == min(factors)
+
+
+def test_a_bridge_at_a_voltage_in_dry_air_is_not_known():
+    with pytest.raises(NotLearnt, match="a bridge was not learnt in dry air"):
+        answer(of_bridge(voltage_V=10, dielectric=OXIDE, humidities=[0.67, 0]), *known())

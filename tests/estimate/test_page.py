@@ -89,7 +89,9 @@ def bridge(rng):
         "gap": rng.uniform(0.5e-6, 5e-6),
         "width": rng.uniform(8e-6, 40e-6),
     }
-    return device | {"stress": float(rng.choice([0, rng.uniform(0, 2e8)])), "length": rng.uniform(5e-5, 8e-4)}
+    device |= {"stress": float(rng.choice([0, rng.uniform(0, 2e8)])), "length": rng.uniform(5e-5, 8e-4)}
+    of_voltage = rng.choice([0, 1]) * 10 ** rng.uniform([-5, 3], [-1, 7])
+    return device | dict(zip(("added", "tension"), of_voltage.tolist(), strict=True))
 
 
 def stopper(rng):

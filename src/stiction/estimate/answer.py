@@ -220,7 +220,8 @@ def _in_air(question, air, table, tips, full):
     pairs += [question.members[0].get(name, beam) + question.members[1].get(name, substrate) for name in names]
     stated, *members = (_lengths(question, heights, air, table, tips, full) for heights in pairs)
     errors = _errors(question, table["dry"] if question.is_dry(air) else table)
-    return LengthsInAir(errors, stated, tuple(members), question.averaged, question.closed)
+    closed = question.closed_on(dict(zip(pairs, (stated, *members), strict=True)), air, table)
+    return LengthsInAir(errors, stated, tuple(members), question.averaged, closed)
 
 
 def _errors(question, learnt):

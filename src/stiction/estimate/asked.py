@@ -1,12 +1,13 @@
 """What all questions to the estimate have in common. Plain Python, SI units."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from stiction.constants import REFERENCE_TEMPERATURE
 from stiction.contact.air import is_humid
 from stiction.estimate.closed.life import Surroundings
-from stiction.estimate.length import most_after
+from stiction.estimate.length import Lengths, most_after
 from stiction.estimate.solids import SolidPair
 from stiction.estimate.statistics import Heights
 
@@ -37,6 +38,15 @@ class Asked:
     def stated(self) -> float | None:
         """Its size as a length."""
         return self.size
+
+    @property
+    def closed(self) -> Any:
+        """Closed form of its lengths from the bare ones, without voltage or stress."""
+        raise NotImplementedError
+
+    def closed_on(self, _found: Mapping[Heights, Lengths], _air: float, _table: Mapping[str, Any]) -> Any:
+        """Closed form in one air, from the bare lengths on the sums of two surfaces that can be meant."""
+        return self.closed
 
     @property
     def most(self) -> float:

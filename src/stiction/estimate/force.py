@@ -58,6 +58,22 @@ def _changed(summits, ratio, power):
     return Lengths(tuple(shift + power * (each - median) for each in summits.logarithms), power * summits.slope)
 
 
+def pull_off(patch: PatchState, learnt: Mapping[str, Any]) -> float:
+    """Median pull-off pressure of a patch, from the part of the table about stoppers [Pa].
+
+    Raises
+    ------
+    NotLearnt
+        If the patch is beyond what was learnt.
+    """
+    return math.exp(-_reciprocals_of(patch, learnt).logarithms[0]) / patch.area
+
+
+def _reciprocals_of(patch, learnt):
+    """Reciprocals of the forces of a patch."""
+    return reciprocals(patch, *(Surrogate(**learnt[name]) for name in ("forces", "full", "attraction")))
+
+
 @dataclass(frozen=True)
 class Stopper(Asked):
     """Question about one stopper."""
@@ -95,7 +111,7 @@ class Stopper(Asked):
         """Reciprocals of its pull-off forces on the sum of two surfaces [1/N]."""
         learnt, attraction = table["stoppers"], self.solids.attraction(water.energy)
         patch = PatchState(heights, water, self._area(learnt), self.solids.modulus, attraction)
-        return reciprocals(patch, *(Surrogate(**learnt[name]) for name in ("forces", "full", "attraction")))
+        return _reciprocals_of(patch, learnt)
 
     def in_dry_air(self, heights: Heights, table: Mapping[str, Any]) -> Lengths:
         """Reciprocals of its pull-off forces in dry air [1/N]."""

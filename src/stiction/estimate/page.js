@@ -37,7 +37,7 @@ const OF_MATERIAL = [
   ["dry_zJ", "Hamaker constant through dry air [zJ]", 60, 480, 0.5, 186.5],
 ];
 const OWN = {[CANTILEVER]: ["thickness_um", "gap_um", "width_um", "length_um", "voltage_V", "dielectric_nm", "tension_mN_per_m"],
-  [BRIDGE]: ["thickness_um", "below_um", "width_um", "length_um", "stress_MPa", "tension_mN_per_m"], [STOPPER]: ["side_um", "other_um", "force_uN", "voltage_V", "dielectric_nm"]};
+  [BRIDGE]: ["thickness_um", "below_um", "width_um", "length_um", "stress_MPa", "voltage_V", "dielectric_nm", "tension_mN_per_m"], [STOPPER]: ["side_um", "other_um", "force_uN", "voltage_V", "dielectric_nm"]};
 const DRY = "dry", DRIEST = 0.345, airOf = (value) => value("humidity") < DRIEST ? DRY : value("humidity");
 const PAIR = ["known_skewness", "known_kurtosis"]; // a file states both or neither
 const OPEN = OF_SURFACE.map(([key]) => key), byId = (id) => document.getElementById(id);
@@ -66,15 +66,14 @@ function questionOf({own, kind, like, substrate, value, open}) {
   const asked = {stated: of(like), members: open ? Object.keys(TABLE.library).map(of) : [], averaged: false,
     humidities: [airOf(value) === DRY ? 0 : airOf(value)], touchdowns: value("touchdowns")};
   Object.assign(asked, {solids: solidsOf(value), temperature: value("temperature_K")});
-  const potential = value("voltage_V"), distance = value("dielectric_nm") * 1e-9;
+  const potential = value("voltage_V"), distance = value("dielectric_nm") * 1e-9, tension = PERMITTIVITY * (potential / distance) ** 2 / 2;
   if (kind === STOPPER) {
-    const sides = ["side_um", "other_um"].map((key) => value(key) * 1e-6), tension = PERMITTIVITY * (potential / distance) ** 2 / 2;
+    const sides = ["side_um", "other_um"].map((key) => value(key) * 1e-6);
     return {...asked, sides, force: value("force_uN") * 1e-6, added: tension * sides[0] * sides[1]};
   }
   const beam = {...asked, thickness: value("thickness_um") * 1e-6, width: value("width_um") * 1e-6, length: value("length_um") * 1e-6, liquid: value("tension_mN_per_m") * 1e-3};
-  if (kind === BRIDGE) return {...beam, gap: value("below_um") * 1e-6, stress: value("stress_MPa") * 1e6};
-  const gap = value("gap_um") * 1e-6;
-  return {...beam, added: energyOf(potential, distance, gap), gap};
+  const gap = value(kind === BRIDGE ? "below_um" : "gap_um") * 1e-6, driven = {...beam, added: energyOf(potential, distance, gap), gap};
+  return kind === BRIDGE ? {...driven, tension, stress: value("stress_MPa") * 1e6} : driven;
 }
 function solidsOf(value) {
   const modulus = value("modulus_GPa") * 1e9, cosine = (key) => Math.cos(value(key) * Math.PI / 180);
@@ -174,7 +173,7 @@ const waterOf = (value) => value("temperature_K") === REFERENCE ? "" : `water: {
 const NAMES = {[CANTILEVER]: "Lever", [BRIDGE]: "Bridge", [STOPPER]: "Bump"};
 const SIZES = {
   [CANTILEVER]: (value) => atVoltageOf(ofBeam(value, "gap_um"), value),
-  [BRIDGE]: (value) => `${ofBeam(value, "below_um")}, residual_stress_MPa: ${value("stress_MPa")}`,
+  [BRIDGE]: (value) => atVoltageOf(`${ofBeam(value, "below_um")}, residual_stress_MPa: ${value("stress_MPa")}`, value),
   [STOPPER]: (value) => atVoltageOf(`contact_um: [${value("side_um")}, ${value("other_um")}], restoring_force_uN: ${value("force_uN")}`, value),
 };
 function ofBeam(value, gap) {

@@ -32,7 +32,7 @@ OF_PAIRS = ("beam", "substrate", "gap_um", "humidities", "attraction", "coarser_
 OF_DEVICES = ("kind", "pair", "length_um", "thickness_um", "gap_um", "width_um", "humidities", "touchdowns")
 OF_DEVICES += ("shock_g", *OF_VOLTAGES)
 OF_BRIDGES = ("kind", "pair", "length_um", "thickness_um", "gap_um", "width_um", "residual_stress_MPa")
-OF_BRIDGES += ("humidities", "touchdowns", "shock_g")
+OF_BRIDGES += ("humidities", "touchdowns", "shock_g", *OF_VOLTAGES)
 OF_STOPPERS = ("kind", "pair", "contact_um", "restoring_force_uN", "stiffness_N_per_m", "gap_um", "mass_ng")
 OF_STOPPERS += ("humidities", "touchdowns", "electrode", "shock_g", *OF_VOLTAGES)
 #: Keys of a material, of which the last two change no length or force.
@@ -407,7 +407,8 @@ def of_middle(name: str, device: Mapping[str, Any], sides: Sequence, **more: Any
     surfaces, members = zip(*sides, strict=True)
     sizes, length = _sizes(device)
     airs, stress = airs_of(device), to_si(device["residual_stress_MPa"], "MPa")
-    return Bridge(name, surfaces, members, airs, *sizes, stress, length, **_often(device), **more)
+    added = energy_of(device, sizes[1]), tension_of(device)
+    return Bridge(name, surfaces, members, airs, *sizes, stress, length, *added, **_often(device), **more)
 
 
 def _often(device):

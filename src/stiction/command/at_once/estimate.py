@@ -187,8 +187,7 @@ class _Kind(NamedTuple):
 
 #: Kinds of devices that options state.
 _CANTILEVER = _Kind("cantilever", of_numbers, ("thickness", "gap"), {"force": "stoppers"})
-_AT_VOLTAGE = dict.fromkeys(("voltage", "dielectric"), "cantilevers and stoppers")
-_BRIDGE = _Kind("bridge", of_middle, ("thickness", "gap"), _CANTILEVER.strange | _AT_VOLTAGE)
+_BRIDGE = _Kind("bridge", of_middle, ("thickness", "gap"), _CANTILEVER.strange)
 _OF_BEAMS = dict.fromkeys(("thickness", "gap", "length"), "beams") | {"stress": "bridges"}
 _STOPPER = _Kind("stopper", of_area, ("contact",), _OF_BEAMS)
 
