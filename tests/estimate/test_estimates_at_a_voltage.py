@@ -23,7 +23,7 @@ from stiction.estimate.learning import bridges as of_bridges
 from stiction.estimate.learning import patches
 from stiction.estimate.learning.design import states
 from stiction.estimate.learning.training import HUMIDITIES, SETS, air_of, surfaces_of, water_of
-from stiction.estimate.length import Lengths, NotLearnt
+from stiction.estimate.length import Lengths
 from stiction.estimate.question import Question, questions
 from stiction.estimate.state import PatchState, film, stiffness_of
 from stiction.estimate.statistics import heights_of, of_pair
@@ -306,11 +306,6 @@ def test_the_surface_that_a_voltage_shortens_most_decides():
     factors = [asked.closed_on({each: found[each]}, 0.67, content()).factor for each in found]
     assert abs(factors[0] - factors[1]) > 1e-3
     assert asked.closed_on(found, 0.67, content()).factor == min(factors)
-
-
-def test_a_bridge_at_a_voltage_in_dry_air_is_not_known():
-    with pytest.raises(NotLearnt, match="a bridge was not learnt in dry air"):
-        answer(of_bridge(voltage_V=10, dielectric=OXIDE, humidities=[0.67, 0]), *known())
 
 
 @pytest.mark.parametrize("number", [2, 4])

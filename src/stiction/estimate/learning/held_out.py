@@ -17,7 +17,8 @@ from stiction.config.reading import read
 from stiction.config.units import from_si
 from stiction.contact.air import Air
 from stiction.estimate.answer import CHOSEN, CONFIDENCES, OF_OTHER_SOLIDS, answer, difficulty
-from stiction.estimate.learning import dry_rows
+from stiction.estimate.dry import processes
+from stiction.estimate.learning import dry_bridges, dry_rows
 from stiction.estimate.learning.design import SurfaceLaw
 from stiction.estimate.learning.dry import CONSTANTS, DryEffort
 from stiction.estimate.learning.errors import coverage, noise_of, scores, tested, tested_bridges, tested_forces
@@ -47,7 +48,7 @@ _RULE = "|---|---|---|---|---|---|---|---|---|"
 _HEAD = "| surfaces | number | refused | mean [%] | rms [%] | largest [%] | half [%] | inside 90 % | inside 95 % |"
 #: Words before both tables of drawn surfaces.
 _OF_LENGTHS = (
-    "`stiction estimate` knows cantilevers, bridges and stoppers in humid air and, without bridges, in dry air, and "
+    "`stiction estimate` knows cantilevers, bridges and stoppers in humid and dry air, and "
     "refuses all else. Below are lengths for 1 in 1000, of polysilicon at 300 K, beside those of drawn surfaces that "
     "it has not learnt, with tips changed by full contact as in a run, on strips of at most 12 µm. The error is the "
     "logarithm of the latter over the estimate, negative on the unsafe side. Half: median of half of the interval of "
@@ -77,28 +78,39 @@ _OTHER_BRIDGES = (
     "by the larger of both factors. No such bridge was tested in full contact. In dry air other moduli are exactly "
     "similar, and intervals are those above."
 )
+_BRIDGES_IN_DRY_AIR = (
+    "Lengths of bridges in dry air, by the closed form with the pull-off pressure of the estimate of stoppers. A "
+    "factor is learnt from {} points, without bridges that come free of two cracks:"
+)
 _FORCES_IN_DRY_AIR = "Forces in dry air, beside patches changed by {} strips of 3 µm in full contact:"
 
 
 def lines(folder: Path) -> Iterator[str]:
     """Lines of the tables of drawn surfaces."""
     table, dry, (of_tips, of_patches) = content(), content()["dry"], DryEffort.strips
-    for words, test, errors, first in (
-        (_OF_LENGTHS, tested, table, "tips"),
-        (_OF_BRIDGES, tested_bridges, table["bridges"], "middle"),
-        (_OF_FORCES, tested_forces, table["stoppers"], "forces"),
-        (_IN_DRY_AIR.format(*CONSTANTS, of_tips), dry_rows.tested, dry, "tips"),
-        (_FORCES_IN_DRY_AIR.format(of_patches), dry_rows.tested_forces, dry["stoppers"], "forces"),
+    in_dry_air = _BRIDGES_IN_DRY_AIR.format(_points(dry_bridges.SETS))
+    forces = processes(dry["stoppers"], "forces", "full")
+    for words, test, errors, learnt_processes in (
+        (_OF_LENGTHS, tested, table, processes(table, "tips", "full")),
+        (_OF_BRIDGES, tested_bridges, table["bridges"], processes(table["bridges"], "middle", "full")),
+        (_OF_FORCES, tested_forces, table["stoppers"], processes(table["stoppers"], "forces", "full")),
+        (_IN_DRY_AIR.format(*CONSTANTS, of_tips), dry_rows.tested, dry, processes(dry, "tips", "full")),
+        (_FORCES_IN_DRY_AIR.format(of_patches), dry_rows.tested_forces, dry["stoppers"], forces),
+        (in_dry_air, dry_rows.tested_bridges, dry["bridges"], (*processes(dry["bridges"], "middle"), *forces)),
     ):
         yield from (words, "", _HEAD, _RULE)
-        processes = [Surrogate(**errors[name]) for name in (first, "full")]
         for name, of_set in SETS.items():
-            learnt = table["modulus"], errors["tested_score"], lambda _, learnt_processes=processes: learnt_processes
+            learnt = table["modulus"], errors["tested_score"], lambda _, learnt=learnt_processes: learnt
             if surfaces := list(test(folder, name, *learnt)):
                 yield _row(of_set, surfaces, errors)
         yield ""
     yield from _of_other_solids(folder, table)
     yield from _of_noise(folder, table["tested_score"])
+
+
+def _points(sets):
+    """Number of the points of all sets to learn from."""
+    return sum(effort.points for name, effort in sets.items() if name.startswith("learn"))
 
 
 def _of_other_solids(folder, table):
