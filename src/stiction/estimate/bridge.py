@@ -25,9 +25,10 @@ from stiction.estimate.closed.beams import SlenderBeam
 from stiction.estimate.closed.bending import end_stiffness
 from stiction.estimate.closed.life import BeamLife
 from stiction.estimate.length import LengthRow, Lengths, NotLearnt, falling, known_at, of_solids
+from stiction.estimate.solids import OF_POLYSILICON, Attraction
 from stiction.estimate.state import OF_PATCHES, Film, PatchState
 from stiction.estimate.statistics import Heights
-from stiction.estimate.table import Surrogate
+from stiction.estimate.table import ATTRACTION, Surrogate
 
 #: Names of the coordinates.
 COORDINATES = (
@@ -84,7 +85,7 @@ class MiddleState:
     stress: float  #: [Pa]
     modulus: float  #: E of the bridge [Pa]
     modulus_in_contact: float  #: E of the solids [Pa]
-    attraction: float = 1.0  #: r of `stiction.estimate.solids` [-]
+    attraction: Attraction = OF_POLYSILICON
     names: ClassVar[tuple[str, ...]] = COORDINATES
 
     @property
@@ -117,7 +118,7 @@ class MiddleState:
         return Stretched.of(self.stress, self.thickness, self.modulus)
 
 
-def lengths(state: MiddleState, middle: Surrogate, full: Surrogate, attraction: Surrogate | None = None) -> Lengths:
+def lengths(state: MiddleState, middle: Surrogate, full: Surrogate, *attraction: Surrogate) -> Lengths:
     """Lengths without stress that are held as well as those under it [m].
 
     Raises
@@ -126,7 +127,7 @@ def lengths(state: MiddleState, middle: Surrogate, full: Surrogate, attraction: 
         If the state is beyond what was learnt.
     """
     change, values = (known_at(process, state.coordinates, COORDINATES) for process in (full, middle))
-    summits = falling(of_solids(values, state, attraction), math.log(state.flooded_length))
+    summits = falling(of_solids(values, state, *attraction), math.log(state.flooded_length))
     return changed(summits, change["shift"], change["power"])
 
 
@@ -174,7 +175,7 @@ class Bridge(Asked):
         sizes = self.thickness, self.gap, self.width, self.stress
         solids, attraction = self.solids, self.solids.attraction(water.energy)
         state = MiddleState(heights, water, *sizes, solids.beam_modulus, solids.modulus, attraction)
-        learnt = (Surrogate(**table["bridges"][name]) for name in ("middle", "full", "attraction"))
+        learnt = (Surrogate(**table["bridges"][name]) for name in ("middle", "full", *ATTRACTION))
         return lengths(state, *learnt)
 
     def in_dry_air(self, _heights: Heights, _table: Mapping[str, Any]) -> Lengths:

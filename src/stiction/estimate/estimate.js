@@ -43,12 +43,22 @@ function film(humidity, temperature, wetting, [tension, volume]) {
 
 // solids
 const POLYSILICON = {modulus: 164e9, beamModulus: 164e9, throughWater: 9.75e-20, inDryAir: 1.865e-19, wetting: 2}, ROUNDING = 1e-9;
-const attractionOf = (solids, {energy}, [tension]) => solids.throughWater / POLYSILICON.throughWater * (POLYSILICON.wetting * tension / energy);
-function ofSolids(values, state, place, {process, names}) {
-  const by = Math.log(state.attraction);
-  if (!by) return values;
-  const byOne = known(process, [...place, by], [...names, "attraction of the solids beside that of the water (from Hamaker constant and contact angles)"]);
-  return {...values, ...Object.fromEntries(["at_0", "at_1", "at_2"].map((name) => [name, values[name] + by * byOne[name]]))};
+const OF_WATER = 37e-21, following = (throughWater) => (Math.sqrt(throughWater) + Math.sqrt(OF_WATER)) ** 2;
+function attractionOf({throughWater, inDryAir}, {energy}, [tension]) {
+  const own = POLYSILICON, byWater = own.wetting * tension / energy, water = throughWater / own.throughWater * byWater;
+  return [water, inDryAir / own.inDryAir * byWater / (following(water * own.throughWater) / following(own.throughWater))];
+}
+const ATTRACTION = ["attraction", "attraction_through_air"], OF_SOLIDS = [
+  "attraction of the solids beside that of the water (from Hamaker constant and contact angles)",
+  "attraction of the solids through air beside that through water (from Hamaker constants and contact angles)"];
+function ofSolids(values, state, place, part) {
+  const by = state.attraction.map(Math.log), changed = {...values};
+  ATTRACTION.forEach((name, k) => {
+    if (!by[k]) return;
+    const byOne = known(part[name], [...place, ...by], [...part.coordinates, ...OF_SOLIDS]);
+    for (const each of ["at_0", "at_1", "at_2"]) changed[each] += by[k] * byOne[each];
+  });
+  return changed;
 }
 const curvature = ({moments: [, second, fourth]}) => Math.sqrt(fourth / second);
 const tensionOf = ({height, energy}) => energy / height;
@@ -96,8 +106,8 @@ function falling(values, shift) {
   return {logarithms: [first, second, third], slope: Math.max(LEAST, values.slope)};
 }
 function onSummits(state, gap, table) {
-  const place = coordinates(state), names = table.coordinates, learnt = {process: table.attraction, names};
-  return falling(ofSolids(known(table.tips, place, names), state, place, learnt), Math.log(1.5 * gap / floodedSlope(state)));
+  const place = coordinates(state);
+  return falling(ofSolids(known(table.tips, place, table.coordinates), state, place, table), Math.log(1.5 * gap / floodedSlope(state)));
 }
 function lengthAt({logarithms: [first, second, third], slope}, score) {
   const [, b, c] = SCORES;
@@ -122,9 +132,9 @@ function lengths(state, gap, table) {
 }
 
 // force: its reciprocal stands for a length
-function reciprocals(patch, {forces, full, attraction, coordinates: names}) {
-  const place = ofPatch(patch), {ratio, power} = known(full, place, names);
-  const values = ofSolids(known(forces, place, names), patch, place, {process: attraction, names});
+function reciprocals(patch, stoppers) {
+  const {forces, full, coordinates: names} = stoppers, place = ofPatch(patch), {ratio, power} = known(full, place, names);
+  const values = ofSolids(known(forces, place, names), patch, place, stoppers);
   return changedBy(falling(values, -Math.log(tensionOf(patch.film) * patch.area)), ratio, Math.max(1, power));
 }
 function changedBy({logarithms, slope}, ratio, power) {
@@ -210,9 +220,9 @@ function ofMiddle(state, {decay}) {
   const contact = contactOf(state);
   return [...ofPatch(middleOf(state)), Math.log(state.gap / state.film.height), decay * contact];
 }
-function lengthsOfBridge(state, closed, {middle, full, attraction, coordinates: names}) {
-  const place = ofMiddle(state, closed), {shift, power} = known(full, place, names);
-  const values = ofSolids(known(middle, place, names), state, place, {process: attraction, names});
+function lengthsOfBridge(state, closed, bridges) {
+  const {middle, full, coordinates: names} = bridges, place = ofMiddle(state, closed), {shift, power} = known(full, place, names);
+  const values = ofSolids(known(middle, place, names), state, place, bridges);
   const {logarithms, slope} = falling(values, Math.log(floodedLength(state))), [median] = logarithms;
   return {logarithms: logarithms.map((each) => median + shift + power * (each - median)), slope: power * slope};
 }

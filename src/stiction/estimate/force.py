@@ -20,7 +20,7 @@ from stiction.estimate.closed.life import StopperLife
 from stiction.estimate.length import LengthRow, Lengths, NotLearnt, falling, known_at, of_solids
 from stiction.estimate.state import OF_PATCHES, Film, PatchState
 from stiction.estimate.statistics import Heights
-from stiction.estimate.table import Surrogate
+from stiction.estimate.table import ATTRACTION, Surrogate
 from stiction.estimate.voltage import Driven
 
 
@@ -38,7 +38,7 @@ class ForceRow:
         return self.force
 
 
-def reciprocals(patch: PatchState, forces: Surrogate, full: Surrogate, attraction: Surrogate | None = None) -> Lengths:
+def reciprocals(patch: PatchState, forces: Surrogate, full: Surrogate, *attraction: Surrogate) -> Lengths:
     """Reciprocals of the pull-off forces of a patch [1/N].
 
     Raises
@@ -47,7 +47,7 @@ def reciprocals(patch: PatchState, forces: Surrogate, full: Surrogate, attractio
         If the patch is beyond what was learnt.
     """
     change, values = (known_at(process, patch.coordinates, OF_PATCHES) for process in (full, forces))
-    summits = falling(of_solids(values, patch, attraction), -math.log(patch.flooded_force))
+    summits = falling(of_solids(values, patch, *attraction), -math.log(patch.flooded_force))
     return _changed(summits, change["ratio"], max(1.0, change["power"]))
 
 
@@ -94,7 +94,7 @@ class Stopper(Asked):
         """Reciprocals of its pull-off forces on the sum of two surfaces [1/N]."""
         learnt, attraction = table["stoppers"], self.solids.attraction(water.energy)
         patch = PatchState(heights, water, self._area(learnt), self.solids.modulus, attraction)
-        return reciprocals(patch, *(Surrogate(**learnt[name]) for name in ("forces", "full", "attraction")))
+        return reciprocals(patch, *(Surrogate(**learnt[name]) for name in ("forces", "full", *ATTRACTION)))
 
     def in_dry_air(self, heights: Heights, table: Mapping[str, Any]) -> Lengths:
         """Reciprocals of its pull-off forces in dry air [1/N]."""

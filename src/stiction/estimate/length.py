@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar, Protocol
 
+from stiction.estimate.solids import Attraction
 from stiction.estimate.state import COORDINATES, OF_SOLIDS, TipState
 from stiction.estimate.table import Surrogate
 
@@ -66,9 +67,7 @@ class Impossible(NotLearnt):
     """Refusal of numbers that no device has. A run refuses them, too."""
 
 
-def lengths(
-    state: TipState, gap: float, tips: Surrogate, full: Surrogate | None, attraction: Surrogate | None = None
-) -> Lengths:
+def lengths(state: TipState, gap: float, tips: Surrogate, full: Surrogate | None, *attraction: Surrogate) -> Lengths:
     """Lengths of beams over a gap [m] in a state.
 
     Full contact changes an attraction by a factor, as a stiffer beam would. ASSUME: on other solids by the same factor.
@@ -78,39 +77,43 @@ def lengths(
     NotLearnt
         If the state is beyond what was learnt.
     """
-    distribution = _on_summits(state, gap, tips, attraction)
+    distribution = _on_summits(state, gap, tips, *attraction)
     for _ in range(2 if full else 0):
         changed = replace(state, stiffness=state.stiffness / change(state, distribution, gap, full))
-        distribution = _on_summits(changed, gap, tips, attraction)
+        distribution = _on_summits(changed, gap, tips, *attraction)
     return distribution
 
 
-def _on_summits(state, gap, tips, attraction):
+def _on_summits(state, gap, tips, *attraction):
     """Lengths on summits alone."""
-    values = of_solids(known_at(tips, state.coordinates, COORDINATES), state, attraction)
+    values = of_solids(known_at(tips, state.coordinates, COORDINATES), state, *attraction)
     return falling(values, math.log(1.5 * gap / state.flooded_slope))
 
 
 class Attracted(Protocol):
     """State of solids that attract each other."""
 
-    attraction: float
+    attraction: Attraction
     coordinates: Sequence[float]
     names: ClassVar[tuple[str, ...]]
 
 
-def of_solids(values: Mapping[str, float], state: Attracted, attraction: Surrogate | None) -> Mapping[str, float]:
+def of_solids(values: Mapping[str, float], state: Attracted, *attraction: Surrogate) -> Mapping[str, float]:
     """Quantities on solids that attract each other as those of a state, from those on polysilicon.
+
+    By the changes for one of the logarithm of each of `Attraction.logarithms`.
 
     Raises
     ------
     NotLearnt
         If the state is beyond what was learnt.
     """
-    if not (attraction and (by := math.log(state.attraction))):
-        return values
-    by_one = known_at(attraction, (*state.coordinates, by), (*state.names, OF_SOLIDS))
-    return dict(values) | {name: values[name] + by * by_one[name] for name in NAMES[:3]}
+    by, changed = state.attraction.logarithms, dict(values)
+    for process, logarithm in zip(attraction, by, strict=False):
+        if logarithm:
+            by_one = known_at(process, (*state.coordinates, *by), (*state.names, *OF_SOLIDS))
+            changed |= {name: changed[name] + logarithm * by_one[name] for name in NAMES[:3]}
+    return changed
 
 
 #: Least fall of the logarithm of a length by one normal score.

@@ -15,6 +15,7 @@ from typing import ClassVar
 
 from stiction.constants import GAS_CONSTANT, WATER_MOLECULE, molar_volume, surface_energy
 from stiction.contact.air import MOLECULES
+from stiction.estimate.solids import OF_POLYSILICON, Attraction
 from stiction.estimate.statistics import Heights
 
 #: Names of the coordinates, for messages: of both, of a beam and of a stopper.
@@ -39,9 +40,11 @@ OF_PATCHES = (
     "humidity",
     "curvature of the summits (from Hurst exponent, corner and cut-off)",
 )
-#: Name of the coordinate of other solids beside these.
-OF_SOLIDS = "attraction of the solids beside that of the water (from Hamaker constant and contact angles)"
-
+#: Names of the coordinates of other solids beside these.
+OF_SOLIDS = (
+    "attraction of the solids beside that of the water (from Hamaker constant and contact angles)",
+    "attraction of the solids through air beside that through water (from Hamaker constants and contact angles)",
+)
 
 #: Height of the thinnest film that is a liquid [m]. A run bounds thinner ones, which are not learnt.
 THINNEST = MOLECULES * WATER_MOLECULE
@@ -94,7 +97,7 @@ class TipState:
     stiffness: float  #: K = E t³ / h² [N m⁻¹]
     width: float  #: [m]
     modulus: float  #: E of the solids [Pa]
-    attraction: float = 1.0  #: r of `stiction.estimate.solids` [-]
+    attraction: Attraction = OF_POLYSILICON
     names: ClassVar[tuple[str, ...]] = COORDINATES
 
     @property
@@ -123,7 +126,7 @@ class PatchState:
     film: Film
     area: float  #: [m²]
     modulus: float  #: E of the solids [Pa]
-    attraction: float = 1.0  #: r of `stiction.estimate.solids` [-]
+    attraction: Attraction = OF_POLYSILICON
     names: ClassVar[tuple[str, ...]] = OF_PATCHES
 
     @property

@@ -15,6 +15,8 @@ from pathlib import Path
 from typing import Any
 
 FILE = Path(__file__).with_name("table.json")
+#: Names of the processes of other solids, by `stiction.estimate.solids.Attraction.logarithms`.
+ATTRACTION = ("attraction", "attraction_through_air")
 
 
 @dataclass(frozen=True)

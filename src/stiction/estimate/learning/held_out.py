@@ -25,7 +25,7 @@ from stiction.estimate.learning.other_solids import rows as of_solids
 from stiction.estimate.learning.other_solids.points import RANGES, TEMPERATURES
 from stiction.estimate.length import NotLearnt
 from stiction.estimate.question import questions
-from stiction.estimate.table import Surrogate, content, known
+from stiction.estimate.table import ATTRACTION, Surrogate, content, known
 from stiction.rounding import bounding
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.opening import EITHER, MIDDLE
@@ -114,7 +114,7 @@ def _of_other_solids(folder, table):
             _HEAD,
             _RULE,
         )
-        learnt = errors["tested_score"], [Surrogate(**errors[name]) for name in (first, "full", "attraction")]
+        learnt = errors["tested_score"], [Surrogate(**errors[name]) for name in (first, "full", *ATTRACTION)]
         wider = {**errors, "margins": errors[OF_OTHER_SOLIDS]}
         for name, of_set in OTHER_SOLIDS.items():
             if surfaces := list(test(folder, name, *learnt, as_polysilicon=False)):

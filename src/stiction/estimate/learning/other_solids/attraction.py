@@ -2,105 +2,134 @@
 
 Tips, patches and bridges on summits, on the strips of some points of `stiction.estimate.learning.training`,
 `stiction.estimate.learning.patches` and `stiction.estimate.learning.bridges`, so that what changes is the attraction
-alone:
+alone: through water with what follows from it through air, then through air alone:
 
     python -m stiction.estimate.learning.other_solids.attraction FOLDER [SET [FIRST LAST]]
 """
 
 import math
 import sys
-from dataclasses import replace
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from stiction.config.units import from_si, to_si
-from stiction.constants import HAMAKER_CONSTANT
 from stiction.estimate.learning import bridges, patches, training
 from stiction.estimate.learning.design import Point, states
-from stiction.estimate.learning.training import TrainingTips, main, train, with_materials
+from stiction.estimate.learning.training import TrainingEffort, TrainingTips, main, train, with_materials
+from stiction.estimate.solids import OF_POLYSILICON, Attraction, SolidPair, following
 from stiction.plan.plan import Plan
 from stiction.streams import stream
 
-#: Folder of the points beside those of polysilicon.
-FOLDER = "attraction"
-#: Least and largest Hamaker constant over polysilicon's, even in its logarithm: from silica through water to gold on
-#: sides of which water has a contact angle of 70°.
-RATIOS = (0.04, 8.0)
-#: Hamaker constant of water [zJ]; J. N. Israelachvili, Intermolecular and Surface Forces.
-_OF_WATER = 37.0
 #: Airs of a point, the first of those of polysilicon.
 AIRS = 3
-#: Sets to learn from: the first points of those of polysilicon.
-SETS = {
-    name: replace(training.SETS[name], points=points, states=AIRS)
-    for name, points in (("learn_any", 32), ("learn_typical", 32))
-}
+#: Names of the ratios in files, by the fields of `stiction.estimate.solids.Attraction`.
+_KEYS = ("ratio", "ratio_through_air")
+#: Sets to learn from.
+_LEARNT = ("learn_any", "learn_typical")
 
 
-#: The same of bridges, which some of the points have.
-OF_BRIDGES = {name: replace(training.SETS[name], points=28, states=AIRS) for name in SETS}
+@dataclass(frozen=True)
+class LearntRatio:
+    """Points at which an attraction changes, beside those at which it does not."""
+
+    name: str  #: field of `stiction.estimate.solids.Attraction`
+    range: tuple[float, float]  #: its least and largest value, even in its logarithm
+    folder: str  #: of the points, beside those of polysilicon
+    before: "LearntRatio | None"  #: that of the points at which it does not change, none for polysilicon
+    points: int  #: of each set, the first ones of polysilicon
+    bridges: int  #: of these, some of which have bridges
+
+    @property
+    def number(self) -> int:
+        """Number of the ratios that differ from polysilicon's."""
+        return 1 + (self.before.number if self.before else 0)
+
+    @property
+    def sets(self) -> dict[str, TrainingEffort]:
+        """Sets of points."""
+        return {name: replace(training.SETS[name], points=self.points, states=AIRS) for name in _LEARNT}
+
+    @property
+    def of_bridges(self) -> dict[str, TrainingEffort]:
+        """Sets of points of bridges."""
+        return {name: replace(effort, points=self.bridges) for name, effort in self.sets.items()}
+
+    def attraction(self, point: Point, seed: int) -> Attraction:
+        """Attraction at a point."""
+        ratios = self.before.attraction(point, seed) if self.before else OF_POLYSILICON
+        low, high = map(math.log, self.range)
+        drawn = math.exp(stream(seed, "estimate", self.folder, point.number).uniform(low, high))
+        return replace(ratios, **{self.name: round(drawn, 4)})
 
 
-def ratio_of(point: Point, seed: int) -> float:
-    """Hamaker constants of a point over polysilicon's [-]."""
-    low, high = map(math.log, RATIOS)
-    return round(math.exp(stream(seed, "estimate", "attraction", point.number).uniform(low, high)), 4)
+#: From silica through water to gold on sides of which water has a contact angle of 70°.
+THROUGH_WATER = LearntRatio("through_water", (0.04, 8.0), "attraction", None, 32, 28)
+#: Solids of the combining relation have 1.4 to 2.7: polysilicon has less, contact angles and unlike sides add.
+THROUGH_AIR = LearntRatio("through_air", (0.5, 4.0), "attraction_through_air", THROUGH_WATER, 24, 16)
 
 
-def in_dry_air(through_water: float) -> float:
-    """Hamaker constant of two solids in dry air, from that through water, by the combining relation [zJ].
-
-    As `stiction.contact.vanderwaals.combined`.
-
-    Examples
-    --------
-    >>> round(in_dry_air(4.6)), round(in_dry_air(250))  # silica, gold
-    (68, 479)
-    """
-    return (through_water**0.5 + _OF_WATER**0.5) ** 2
-
-
-def scaled(plan: Plan, ratio: float) -> Plan:
-    """Plan of a point whose solids attract each other through water as polysilicon by a ratio.
-
-    ASSUME: in air, beyond the film, they do as the combining relation says, in proportion to polysilicon.
-    """
-    polysilicon = {medium: from_si(constant, "zJ") for medium, constant in HAMAKER_CONSTANT.items()}
-    through_water = ratio * polysilicon["water"]
-    dry = polysilicon["dry"] * (in_dry_air(through_water) / in_dry_air(polysilicon["water"]))
-    material = {"hamaker_constant_zJ": {"water": through_water, "dry": dry}}
+def scaled(plan: Plan, attraction: Attraction) -> Plan:
+    """Plan of a point whose solids have an attraction beside polysilicon's."""
+    polysilicon = SolidPair()
+    through_water = attraction.through_water * polysilicon.through_water
+    dry = attraction.through_air * (following(through_water) / following(polysilicon.through_water))
+    constants = {"water": through_water, "dry": dry * polysilicon.in_dry_air}
+    material = {"hamaker_constant_zJ": {medium: from_si(constant, "zJ") for medium, constant in constants.items()}}
     return with_materials(plan, material, material)
 
 
-def computed(point: Point, name: str, valid: dict[str, Any]) -> dict[str, Any]:
+def _ratios(attraction):
+    """Ratios of an attraction for a file."""
+    return dict(zip(_KEYS, map(np.array, vars(attraction).values()), strict=True))
+
+
+def stored_attraction(numbers: Mapping[str, Any]) -> Attraction:
+    """Attraction of a file, which may have that through water alone."""
+    return Attraction(*(float(numbers[key]) for key in _KEYS if key in numbers))
+
+
+def computed(point: Point, name: str, valid: dict[str, Any], ratio: LearntRatio) -> dict[str, Any]:
     """Numbers of one point of a set."""
-    effort, of_polysilicon = SETS[name], training.SETS[name]
-    ratio, airs = ratio_of(point, effort.seed), states(of_polysilicon.states, point.number, effort.seed)[:AIRS]
+    effort, of_polysilicon = ratio.sets[name], training.SETS[name]
+    attraction = ratio.attraction(point, effort.seed)
+    airs = states(of_polysilicon.states, point.number, effort.seed)[:AIRS]
     number = effort.tips + round(effort.tips_by_width / to_si(point.width, "um"))
-    tips = TrainingTips.of(point, scaled(training.plan_of(point, valid), ratio), number, effort.seed)
+    tips = TrainingTips.of(point, scaled(training.plan_of(point, valid), attraction), number, effort.seed)
     sides = patches.sides_of(point, effort.seed, effort.law)
-    plan = scaled(patches.plan_of(point, sides, patches.base()), ratio)
+    plan = scaled(patches.plan_of(point, sides, patches.base()), attraction)
     forces = patches.forces_of(point, plan, airs[:, 0], effort.patches, effort.seed)
     slopes = np.array([tips.slopes(*air) for air in airs], np.float32)
-    return {"ratio": np.array(ratio), "slopes": slopes, "forces": forces.astype(np.float32)}
+    return _ratios(attraction) | {"slopes": slopes, "forces": forces.astype(np.float32)}
 
 
-def computed_bridges(point: Point, name: str, valid: dict[str, Any]) -> dict[str, Any]:
+def computed_bridges(point: Point, name: str, valid: dict[str, Any], ratio: LearntRatio) -> dict[str, Any]:
     """Lengths that the middle of the bridges of one point of a set holds."""
-    effort, of_polysilicon = OF_BRIDGES[name], training.SETS[name]
-    ratio, airs = ratio_of(point, effort.seed), states(of_polysilicon.states, point.number, effort.seed)[:AIRS]
-    plan = scaled(bridges.plan_of(point, valid), ratio)
-    strips = bridges.TrainingStrips.of(point, plan, bridges.STRIPS, effort.seed)
+    effort, of_polysilicon = ratio.of_bridges[name], training.SETS[name]
+    attraction = ratio.attraction(point, effort.seed)
+    airs = states(of_polysilicon.states, point.number, effort.seed)[:AIRS]
+    strips = bridges.TrainingStrips.of(
+        point, scaled(bridges.plan_of(point, valid), attraction), bridges.STRIPS, effort.seed
+    )
     each = zip(airs[:, 0], bridges.sizes_of(point, name), strict=False)
     lengths = np.array([strips.lengths(height, size, effort.patches) for height, size in each])
-    return {"ratio": np.array(ratio), "lengths": lengths.astype(np.float32)}
+    return _ratios(attraction) | {"lengths": lengths.astype(np.float32)}
 
 
 if __name__ == "__main__":
-    trained = Path(sys.argv[1]) / FOLDER
-    main(training.base(), computed, trained, SETS, *sys.argv[2:])
-    for each, of_set in OF_BRIDGES.items():
-        numbers = range(0, of_set.points, bridges.EVERY[each])
-        train(trained / bridges.FOLDER / each, of_set.all, numbers, bridges.base(), computed_bridges)
+    for of_ratio in (THROUGH_WATER, THROUGH_AIR):
+        trained = Path(sys.argv[1]) / of_ratio.folder
+        main(training.base(), partial(computed, ratio=of_ratio), trained, of_ratio.sets, *sys.argv[2:])
+        for each, of_set in of_ratio.of_bridges.items():
+            numbers = range(0, of_set.points, bridges.EVERY[each])
+            train(
+                trained / bridges.FOLDER / each,
+                of_set.all,
+                numbers,
+                bridges.base(),
+                partial(computed_bridges, ratio=of_ratio),
+            )

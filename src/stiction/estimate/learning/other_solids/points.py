@@ -14,11 +14,10 @@ from typing import Any
 
 import numpy as np
 
-from stiction.config.units import to_si
+from stiction.config.units import from_si, to_si
 from stiction.contact import meniscus
 from stiction.estimate.learning import patches, training
 from stiction.estimate.learning.design import Point, SurfaceLaw, states
-from stiction.estimate.learning.other_solids.attraction import in_dry_air
 from stiction.estimate.learning.training import (
     FACTORS,
     TrainingEffort,
@@ -29,6 +28,7 @@ from stiction.estimate.learning.training import (
     water_of,
     with_materials,
 )
+from stiction.estimate.solids import following
 from stiction.plan.plan import Plan
 from stiction.streams import stream
 
@@ -60,10 +60,11 @@ def _material(rng):
     """Material of one side. Its constants through water and air follow from each other by the combining relation."""
     modulus, poisson_ratio, angle = (rng.uniform(*RANGES[name]) for name in ("modulus", "poisson_ratio", "angle"))
     through_water = math.exp(rng.uniform(*map(math.log, RANGES["hamaker"])))
+    through_air = from_si(following(to_si(through_water, "zJ")), "zJ")
     return {
         "young_modulus_GPa": round(modulus, 1),
         "poisson_ratio": round(poisson_ratio, 3),
-        "hamaker_constant_zJ": {"water": round(through_water, 2), "dry": round(in_dry_air(through_water), 2)},
+        "hamaker_constant_zJ": {"water": round(through_water, 2), "dry": round(through_air, 2)},
         "contact_angle_deg": round(angle, 1),
     }
 
