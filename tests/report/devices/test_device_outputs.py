@@ -215,7 +215,7 @@ def test_the_sizes_to_build_are_in_the_panel_of_the_own_gap_and_of_all_that_hold
     panels = figures_devices.chart(CHARTS, STEEP, {"C1": (2e-6, gap, answer)}).axes
     marked = {panel.get_title(loc="left"): found for panel in panels if any((found := diamonds(panel)).values())}
     shown = {
-        "(c) C1, gap 20 µm, beam or tip: build\ndiamonds, not lines": {
+        "(c) C1, gap 20 µm, beam or tip: build\ndiamonds": {
             False: [(0.5, pytest.approx(80))],
             True: [(0.4, pytest.approx(90))],
         }

@@ -55,7 +55,7 @@ _CHARACTER = 0.05
 #: Label of the lengths of a chart.
 _OF_CHART = "length [µm]; lines: simulated limit,\none touchdown, exact inputs (not to build)"
 #: End of the title of a panel with sizes to build.
-_BUILD_THESE = ": build diamonds, not lines"
+_BUILD_THESE = ": build diamonds"
 #: Points of a curve between computed humidities.
 _POINTS = 200
 #: Space above the longest curve of a chart, in units of the range of its lengths.

@@ -15,19 +15,20 @@ from stiction.report.format import UM, as_published, percent, signed, with_error
 from stiction.report.model_error.column import change, marked_change
 from stiction.report.published import value
 from stiction.report.style import (
+    DOUBLE,
     MODELS,
     PUBLISHED,
     SINGLE,
     STUDIES,
-    at_most_double,
-    columns_of_panels,
     figure_stage,
     handles,
     humidity_axis,
+    is_page,
     legend_below,
     legend_outside,
-    letter_lines,
+    letter,
     marker,
+    panels,
     shades,
     styled,
 )
@@ -109,8 +110,8 @@ _ERROR, _LENGTH = (
     "crack by full contact,\nlonger than the model's by [%]",
     "crack length,\nlonger than published by [%]",
 )
-#: Mean width of a character of a title [in].
-_CHARACTER = 0.055
+#: Mean width of a character of a title, and height of a panel [in].
+_CHARACTER, _HIGH = 0.055, 2.6
 
 
 def table(*data) -> Table:
@@ -150,21 +151,30 @@ def drawn(frame: pd.DataFrame) -> Figure:
     """
     compared = frame[frame.published_um.notna()]
     pairs = list(dict.fromkeys(compared.pair))
-    figure, columns, lines = columns_of_panels(1 + len(pairs), 1, at_most_double(1.3 * SINGLE), 2.6)
-    error, *deviations = columns[:, 0]
+    figure, (error, *deviations), width = _arranged(1 + len(pairs))
     _errors(error, frame)
     for panel, pair in zip(deviations, pairs, strict=True):
         _deviations(panel, compared[compared.pair == pair])
-    for panel in columns[:, 0]:
+    for panel in (error, *deviations):
         panel.axhline(0, color="0.6", linewidth=0.6, zorder=0)
         panel.set(xlabel="relative humidity [–]", xlim=error.get_xlim())
         humidity_axis(panel)
     legend_below(error, handles(error)[0])
-    legend_outside(figure, handles(*deviations), "lower", 1)
+    legend_outside(figure, handles(*deviations), "lower", 3)
     titles = [_in_words(frame.model_error_percent), *(_off(compared[compared.pair == pair]) for pair in pairs)]
-    widest = int(figure.get_figwidth() / lines[0].shape[1] / _CHARACTER)
-    letter_lines(lines, [textwrap.fill(title, widest) for title in titles])
+    letter([error, *deviations], [textwrap.fill(title, int(width / _CHARACTER)) for title in titles])
     return figure
+
+
+def _arranged(count):
+    """Figure with some panels in two columns, or below each other on a page, and the width of a column [in]."""
+    across = 1 if is_page() else min(count, 2)
+    rows = -(-count // across)
+    figure, axes = panels(rows, across, (min(DOUBLE, 1.3 * SINGLE * across), _HIGH * rows))
+    shown, unused = np.split(axes.ravel(), [count])
+    for panel in unused:
+        panel.remove()
+    return figure, shown, figure.get_figwidth() / across
 
 
 def _in_words(errors):
