@@ -18,6 +18,7 @@ from stiction.estimate.bridge import Bridge, Stretched
 from stiction.estimate.closed.life import BeamLife, Dried, StopperLife, Touching
 from stiction.estimate.force import ForceRow, Stopper
 from stiction.estimate.length import Impossible, LengthRow, Lengths, NotLearnt, after, normal_score, score_at
+from stiction.estimate.promise import promise
 from stiction.estimate.question import Question
 from stiction.estimate.state import THINNEST, film
 from stiction.estimate.table import Surrogate
@@ -80,6 +81,11 @@ class Estimate:
     def use(self) -> float:
         """Largest length or smallest force to use, NaN where a run alone knows it, see `is_fast` [SI]."""
         return math.nan if self.is_fast else self.use_if_slow
+
+    @property
+    def promise(self) -> str | None:
+        """Sentence on what the size to use promises, none where a run alone knows this size."""
+        return None if self.is_fast else promise(CONFIDENCES[0], self.is_force)
 
     @property
     def is_unsafe(self) -> bool:

@@ -1,5 +1,5 @@
 // Sliders, table and file of the page. The arithmetic is in estimate.js.
-const TABLE = JSON.parse(document.getElementById("content").textContent);
+const [TABLE, PROMISES] = ["content", "promises"].map((id) => JSON.parse(document.getElementById(id).textContent));
 const CANTILEVER = "cantilever", BRIDGE = "bridge", STOPPER = "stopper";
 const INPUTS = [
   ["kind", "Device", [CANTILEVER, BRIDGE, STOPPER], CANTILEVER],
@@ -114,6 +114,7 @@ function write(found, {kind, value}) {
   const [least, most] = outward(found.rows[2].intervals["90"]);
   const safe = isForce ? `at least ${most}` : mustDry ? `at most ${bound(dried[0] * 1e6)}, or it can collapse while ${LIQUID} dries` : `at most ${least}`;
   byId("said").textContent = `1 in 1000 sticks between ${least} and ${most} ${symbol} (90 %): use ${safe}.`;
+  byId("promise").textContent = PROMISES[Number(isForce)];
   byId("before").textContent = leftOut(kind, value);
   const limit = isForce ? found.rows[2].intervals["90"][1] : mustDry ? dried[0] : lowest, size = value(key) * 1e-6;
   const isUnsafe = isForce ? size < limit : size > limit, stated = `${value(key)} ${symbol}`;
@@ -145,7 +146,7 @@ function refuse(reason) {
   byId("said").className = "said refused";
   byId("said").textContent = `Not known at once: ${reason.message}. A run computes it.`;
   byId("table").innerHTML = "<caption>No number</caption>";
-  for (const id of ["unsafe", "before", "stuck", "life"]) byId(id).textContent = "";
+  for (const id of ["unsafe", "before", "promise", "stuck", "life"]) byId(id).textContent = "";
 }
 function liquidsOf(kind, value) {
   const tension = value("tension_mN_per_m");

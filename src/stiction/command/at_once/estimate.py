@@ -289,6 +289,8 @@ def shown(estimate: Estimate) -> Iterator[str]:
     if estimate.stuck is not None:
         yield f"  {_at_its_size(estimate, symbol)}"
     yield f"  {chosen(estimate)}."
+    if estimate.promise:
+        yield f"  {estimate.promise}"
     yield from (f"  {sentence}" for sentence in life.sentences(estimate, symbol))
 
 
