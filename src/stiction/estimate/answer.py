@@ -15,6 +15,7 @@ from functools import cached_property
 from typing import Any
 
 from stiction.estimate.bridge import Bridge, Stretched
+from stiction.estimate.closed.flats import FlatBound, worst
 from stiction.estimate.closed.life import BeamLife, Dried, StopperLife, Touching
 from stiction.estimate.force import ForceRow, Stopper
 from stiction.estimate.length import Impossible, LengthRow, Lengths, NotLearnt, after, normal_score, score_at
@@ -97,6 +98,15 @@ class Estimate:
     def is_fast(self) -> bool:
         """Whether a shock can separate it faster than its water evaporates, which the estimate does not know."""
         return self.question.surroundings.shock > 0 and not all(map(self.question.is_dry, self.question.humidities))
+
+    @cached_property
+    def flat(self) -> FlatBound:
+        """What flat surfaces in contact hold in the worst of its airs, without its voltage, as column *bound* of a run.
+
+        No surface holds a shorter beam, or a larger force of a stopper. Its tip is another matter: see its field.
+        """
+        asked = self.question
+        return worst([asked.on_flats(asked.attractions(air)) for air in asked.humidities], self.is_force)
 
     @cached_property
     def touching(self) -> Touching:

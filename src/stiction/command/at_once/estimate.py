@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from typing import Any, NamedTuple
 
-from stiction.command.at_once import life
+from stiction.command.at_once import flats, life
 from stiction.command.output_streams import say
 from stiction.config.units import from_si
 from stiction.contact.air import DRY, DRY_AIR, Air
@@ -291,6 +291,7 @@ def shown(estimate: Estimate) -> Iterator[str]:
     yield f"  {chosen(estimate)}."
     if estimate.promise:
         yield f"  {estimate.promise}"
+    yield f"  {flats.sentences(estimate, symbol)}"
     yield from (f"  {sentence}" for sentence in life.sentences(estimate, symbol))
 
 
