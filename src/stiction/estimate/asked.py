@@ -1,13 +1,17 @@
 """What all questions to the estimate have in common. Plain Python, SI units."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import ClassVar
 
 from stiction.constants import REFERENCE_TEMPERATURE
 from stiction.contact.air import is_humid
+from stiction.estimate.closed import flats
+from stiction.estimate.closed.flats import FlatBound, FlatPull
 from stiction.estimate.closed.life import Surroundings
 from stiction.estimate.length import most_after
 from stiction.estimate.solids import SolidPair
+from stiction.estimate.state import film
 from stiction.estimate.statistics import Heights
 
 
@@ -39,6 +43,11 @@ class Asked:
         return self.size
 
     @property
+    def is_driven(self) -> bool:
+        """Whether a voltage holds it as well."""
+        return False
+
+    @property
     def most(self) -> float:
         """Largest fraction that is known after all touchdowns [-]."""
         return most_after(self.touchdowns)
@@ -51,3 +60,12 @@ class Asked:
     def is_dry(self, air: float) -> bool:
         """Whether no water condenses between its surfaces at a humidity [-]."""
         return not (is_humid(air) and self.solids.is_wetted)
+
+    def attractions(self, air: float) -> tuple[FlatPull, ...]:
+        """Attractions of flat surfaces in contact at a humidity [-]."""
+        water = None if self.is_dry(air) else film(air, self.temperature, self.solids.wetting)
+        return flats.attractions(water, self.solids)
+
+    def on_flats(self, attracted: Sequence[FlatPull]) -> FlatBound:
+        """Size that flat surfaces hold by their attractions."""
+        raise NotImplementedError

@@ -15,14 +15,16 @@ rest is learnt.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from stiction.config.units import to_si
 from stiction.estimate.asked import Asked
+from stiction.estimate.closed import flats
 from stiction.estimate.closed.beams import SlenderBeam
 from stiction.estimate.closed.bending import end_stiffness
+from stiction.estimate.closed.flats import FlatBound, FlatPull
 from stiction.estimate.closed.life import BeamLife
 from stiction.estimate.length import LengthRow, Lengths, NotLearnt, falling, known_at, of_solids
 from stiction.estimate.state import OF_PATCHES, Film, PatchState
@@ -163,6 +165,10 @@ class Bridge(Asked):
         """Its life."""
         sizes = self.thickness, self.gap, self.width, self.solids.beam_modulus
         return BeamLife(SlenderBeam(2, *sizes, self.stress), self.surroundings)
+
+    def on_flats(self, attracted: Sequence[FlatPull]) -> FlatBound:
+        """Length that flat surfaces hold by their attractions."""
+        return flats.of_bridge(self.life.beam, attracted)
 
     def errors(self, table: Mapping[str, Any]) -> Mapping[str, Any]:
         """Part of the table with the errors of its lengths."""

@@ -337,10 +337,14 @@ function standing(beam, liquid) {
   }, scale ** 0.25);
 }
 function released(beam, liquid) {
-  const {clamps, modulus, thickness, gap} = beam;
-  if (clamps === 1) return (3 / 16 * modulus * thickness ** 3 * gap ** 2 / liquid) ** 0.25;
-  const pull = Math.sqrt(48 * liquid / (modulus * thickness ** 3)) / gap, decay = Math.sqrt(tensionAt(beam, 1));
-  return 2 * settledLength((crack) => Math.sqrt(endStiffness(decay * crack)[1] / pull), Math.sqrt(6 / pull));
+  const {clamps} = beam;
+  const crack = arrested(beam, 2 * liquid);
+  return clamps === 1 ? crack / Math.SQRT2 : 2 * crack;
+}
+function arrested(beam, energy) {
+  const {modulus, thickness, gap} = beam;
+  const pull = Math.sqrt(24 * energy / (modulus * thickness ** 3)) / gap, decay = Math.sqrt(tensionAt(beam, 1));
+  return settledLength((crack) => Math.sqrt(endStiffness(decay * crack)[1] / pull), Math.sqrt(6 / pull));
 }
 function byMode(number, tension) {
   let low = (2 * number - 1) * Math.PI, high = 2 * number * Math.PI;
@@ -360,10 +364,65 @@ function halfSineShock(beam, length) {
   const overshoot = clamps === 1 ? OF_CANTILEVER : sum(modes) / byUnit;
   return modulus * thickness ** 2 * gap / (12 * DENSITY * length ** 4 * byUnit) / (HALF_SINE * overshoot);
 }
-function lifeOf({stress, thickness, gap, width, length, liquid, solids = POLYSILICON}) {
-  const beam = {clamps: stress === undefined ? 1 : 2, stress, thickness, gap, width, modulus: solids.beamModulus};
+const beamOf = ({stress, thickness, gap, width, solids = POLYSILICON}) =>
+  ({clamps: stress === undefined ? 1 : 2, stress, thickness, gap, width, modulus: solids.beamModulus});
+function lifeOf(question) {
+  const beam = beamOf(question), {liquid, length} = question;
   const dried = liquid ? [standingEach, standing, released].map((of) => of(beam, liquid)) : null;
   return {dried, shock: halfSineShock(beam, length)};
+}
+
+// flats: surfaces in contact, with water in all gaps where it condenses
+const EDGE = 0.1e-6, WAVELENGTH = 100e-9, RANGE = 0.97 * 2 ** (1 / 6) * 2.09e-10, SHORTER = Math.log(0.98), SLOPES = 64;
+function workAcross(constant, gap) {
+  const near = AT_REST / (AT_REST + gap);
+  return workOf(constant) * 4 / 3 * (near ** 2 / (1 + 5.32 * gap / WAVELENGTH) - near ** 8 / 4);
+}
+function attractionsOf({throughWater, inDryAir}, film) {
+  const farthest = inDryAir / (6 * Math.PI * AT_REST ** 3) * 2 / Math.sqrt(27), work = workOf(film ? throughWater : inDryAir);
+  const beyond = film ? workAcross(inDryAir, film.height) - workAcross(throughWater, film.height) : 0;
+  const solids = {energy: work + beyond, most: work / RANGE + farthest};
+  return film ? [solids, {energy: film.energy, most: tensionOf(film)}] : [solids];
+}
+function onFlats(question, attractions) {
+  const [energy, most] = ["energy", "most"].map((name) => sum(attractions.map((each) => each[name])));
+  if (question.sides) return {size: most * question.sides[0] * question.sides[1]};
+  const beam = beamOf(question), crack = arrested(beam, energy);
+  return beam.clamps === 1 ? {size: crack, tip: atTip(beam, crack, attractions)} : {size: ofFlatMiddle(beam, crack, energy, most)};
+}
+function atTip({modulus, thickness, gap}, crack, attractions) {
+  const sharp = 1.5 * gap / crack * Math.SQRT2, bending = 2 / 27 * modulus * thickness ** 3 / gap ** 2;
+  const onEdge = ({energy, most}, slope) => {
+    const edge = Math.sqrt(2 * EDGE * energy * most);
+    return slope ** 2 * EDGE / 2 < energy / most ? energy / slope + most * slope * EDGE / 2 + edge : 2 * edge;
+  };
+  const excess = (slope) => Math.log(sum(attractions.map((each) => onEdge(each, slope))) / (bending * slope ** 3));
+  const ratio = 4 * Math.exp(excess(sharp) / 3), slopes = Array.from({length: SLOPES + 1}, (_, k) => sharp / 2 * ratio ** (k / SLOPES));
+  const held = slopes.findLastIndex((slope) => excess(slope) >= 0), [below, above] = [0, 1].map((k) => excess(slopes[held + k]));
+  return 1.5 * gap / (slopes[held] * (slopes[held + 1] / slopes[held]) ** (below / (below - above)));
+}
+function ofFlatMiddle(beam, crack, energy, most) {
+  const {modulus, thickness, gap, width} = beam, stiffness = modulus * width * thickness ** 3 / 12;
+  const excess = (logarithm) => {
+    const half = Math.exp(logarithm) / 2, [force, moment] = endStiffness(Math.sqrt(tensionAt(beam, half)));
+    const pull = 2 * force * stiffness * gap / half ** 3, part = pull / (2 * width * most);
+    return moment * gap / half ** 2 * part ** 2 / 2 - 7 / 48 * pull * part ** 3 / stiffness - energy / most;
+  };
+  for (let longer = Math.log(2 * crack); longer > Math.log(thickness); longer += SHORTER) {
+    if (excess(longer + SHORTER) <= 0) continue;
+    let low = longer + SHORTER, high = longer;
+    for (let k = 0; k < 60; k++) {
+      const middle = 0.5 * (low + high);
+      if (excess(middle) > 0) low = middle; else high = middle;
+    }
+    return Math.exp(low);
+  }
+  return 0;
+}
+function worstOnFlats(question, films) {
+  const bounds = films.map((film) => onFlats(question, attractionsOf(question.solids || POLYSILICON, film)));
+  const worst = question.sides ? Math.max : Math.min;
+  return {size: worst(...bounds.map(({size}) => size)), tip: Math.min(...bounds.map(({tip}) => tip)), isHumid: films.some(Boolean)};
 }
 
 // normal distribution: continued fraction and series of erfc
@@ -423,8 +482,9 @@ function answer(question, table) {
   const errorsOf = (part) => isOfPolysilicon || !part.margins_of_other_solids ? part : {...part, margins: part.margins_of_other_solids};
   const airs = question.humidities.map((air) => {
     const isHumid = air > 0 && wetting > ROUNDING;
-    const of = isHumid ? (each) => lengths(each, film(air, temperature, wetting, table.water)) : inDryAir;
-    return {stated: of(question.stated), members: question.members.map(of), errors: errorsOf(errors(isHumid ? table : table.dry))};
+    const water = isHumid ? film(air, temperature, wetting, table.water) : null;
+    const of = isHumid ? (each) => lengths(each, water) : inDryAir;
+    return {water, stated: of(question.stated), members: question.members.map(of), errors: errorsOf(errors(isHumid ? table : table.dry))};
   });
   const once = (p) => -Math.expm1(Math.log1p(-p) / question.touchdowns);
   const rows = FRACTIONS.map((fraction) => {
@@ -436,7 +496,8 @@ function answer(question, table) {
     const length = (one) => Math.exp(logarithmOf(one, score, question.averaged));
     return {fraction, ...row({length: closed.length(Math.min(...airs.map(length))), intervals: ends})};
   });
-  return {rows, stuck: stated ? stuck(question, airs, closed.bare(stated)) : null, life: question.sides ? null : lifeOf(question)};
+  return {rows, stuck: stated ? stuck(question, airs, closed.bare(stated)) : null, life: question.sides ? null : lifeOf(question),
+    flat: worstOnFlats(question, airs.map(({water}) => water))};
 }
 const logarithmOf = (one, score, averaged) => averaged ? centre(one, score)[0] : Math.log(lengthAt(one.stated, score));
 function endsOf(one, score, confidence) {

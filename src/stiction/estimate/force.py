@@ -9,13 +9,15 @@ ASSUME: forces are lognormal for the mean of the powers, with the scatter from t
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from stiction.config.units import to_si
 from stiction.estimate import dry
 from stiction.estimate.asked import Asked
+from stiction.estimate.closed import flats
+from stiction.estimate.closed.flats import FlatBound, FlatPull
 from stiction.estimate.closed.life import StopperLife
 from stiction.estimate.length import LengthRow, Lengths, NotLearnt, falling, known_at, of_solids
 from stiction.estimate.state import OF_PATCHES, Film, PatchState
@@ -85,6 +87,10 @@ class Stopper(Asked):
     def life(self) -> StopperLife:
         """Its life."""
         return StopperLife(self.surroundings)
+
+    def on_flats(self, attracted: Sequence[FlatPull]) -> FlatBound:
+        """Force that flat surfaces hold by their attractions."""
+        return flats.of_stopper(math.prod(self.sides), attracted)
 
     def errors(self, table: Mapping[str, Any]) -> Mapping[str, Any]:
         """Part of the table with the errors of its forces."""

@@ -12,7 +12,9 @@ from stiction.contact.air import DRY, DRY_AIR, is_possible
 from stiction.estimate import dry
 from stiction.estimate.asked import Asked
 from stiction.estimate.bridge import Bridge
+from stiction.estimate.closed import flats
 from stiction.estimate.closed.beams import SlenderBeam
+from stiction.estimate.closed.flats import FlatBound, FlatPull
 from stiction.estimate.closed.life import BeamLife, Surroundings
 from stiction.estimate.force import Stopper
 from stiction.estimate.length import Impossible, LengthRow, Lengths, NotLearnt, lengths
@@ -118,6 +120,11 @@ class Question(Asked):
         return self.length
 
     @property
+    def is_driven(self) -> bool:
+        """Whether a voltage holds it as well."""
+        return self.added > 0
+
+    @property
     def _stiffness(self):
         """Stiffness as of `stiction.estimate.state`."""
         return stiffness_of(self.solids.beam_modulus, self.thickness, self.gap)
@@ -132,6 +139,10 @@ class Question(Asked):
         """Its life."""
         sizes = self.thickness, self.gap, self.width, self.solids.beam_modulus
         return BeamLife(SlenderBeam(1, *sizes), self.surroundings)
+
+    def on_flats(self, attracted: Sequence[FlatPull]) -> FlatBound:
+        """Lengths that flat surfaces hold by their attractions."""
+        return flats.of_cantilever(self.life.beam, attracted)
 
     def errors(self, table: Mapping[str, Any]) -> Mapping[str, Any]:
         """Part of the table with the errors of its lengths."""
