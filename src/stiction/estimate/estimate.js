@@ -167,7 +167,7 @@ function dryReciprocals(patch, {forces, full, coordinates: names}) {
   const scatter = (found.logarithms[0] - found.logarithms[2]) / 2;
   return scattered(found, power, -change.ratio - (1 - power ** 2) * scatter ** 2 / 2);
 }
-function ofStopper({sides, force, solids = POLYSILICON}, {water: ofWater, stoppers, dry}) {
+function ofStopper({sides, force, added, solids = POLYSILICON}, {water: ofWater, stoppers, dry}) {
   const [one, other] = sides, {modulus} = solids;
   const areaOf = ({sides: [low, high]}) => {
     if (!sides.every((side) => low * 1e-6 <= side && side <= high * 1e-6)) throw new NotLearnt(`sides of a stopper must be from ${low} to ${high} µm`);
@@ -177,7 +177,7 @@ function ofStopper({sides, force, solids = POLYSILICON}, {water: ofWater, stoppe
     lengths: (heights, water) =>
       reciprocals({heights, film: water, area: areaOf(stoppers), modulus, attraction: attractionOf(solids, water, ofWater)}, stoppers),
     inDryAir: (heights) => dryReciprocals({heights, constant: solids.inDryAir, area: areaOf(dry.stoppers), modulus}, dry.stoppers),
-    closed: drivenBy(0), errors: (part) => part.stoppers, stated: force && 1 / force,
+    closed: pulledBy(added || 0), errors: (part) => part.stoppers, stated: force && 1 / force,
     row: ({length, intervals}) => ({size: 1 / length, intervals: Object.fromEntries(Object.entries(intervals).map(([key, [low, high]]) => [key, [1 / high, 1 / low]]))}),
   };
 }
@@ -189,9 +189,9 @@ function endStiffness(kl) {
   const force = kl < DIFFERENT ? 12 / (1 - kl ** 2 / 10 + 17 * kl ** 4 / 1680) : kl ** 2 / (1 - mean);
   return [force, force * mean / 2];
 }
-function stretchedBy(stress, thickness, modulus) {
+function stretchedBy(stress, thickness, modulus, factor = 1) {
   const decay = Math.sqrt(12 * stress / modulus) / thickness, ends = (length) => endStiffness(decay * length / 2);
-  const bare = (length) => { const [force, moment] = ends(length); return length * (864 / (force ** 2 * moment)) ** 0.125; };
+  const bare = (length) => { const [force, moment] = ends(length); return length * (864 / (force ** 2 * moment)) ** 0.125 / factor; };
   const under = (short) => {
     let length = short;
     for (let k = 0; k < 60; k++) length *= short / bare(length);
@@ -199,8 +199,9 @@ function stretchedBy(stress, thickness, modulus) {
   };
   return {bare, length: under, decay};
 }
-function floodedLength({film, thickness, gap, modulus}) {
-  return (768 * (modulus * thickness ** 3) ** 2 * gap ** 3 / (film.energy ** 2 / film.height)) ** 0.125;
+const heldBy = ({thickness, gap, modulus}) => 768 * (modulus * thickness ** 3) ** 2 * gap ** 3;
+function floodedLength(state) {
+  return (heldBy(state) / (state.film.energy ** 2 / state.film.height)) ** 0.125;
 }
 function contactOf(state) {
   return 8 * state.modulus * state.thickness ** 3 * state.gap / (floodedLength(state) ** 3 * tensionOf(state.film));
@@ -216,8 +217,15 @@ function lengthsOfBridge(state, closed, {middle, full, attraction, coordinates: 
   const {logarithms, slope} = falling(values, Math.log(floodedLength(state))), [median] = logarithms;
   return {logarithms: logarithms.map((each) => median + shift + power * (each - median)), slope: power * slope};
 }
-function ofBridge({thickness, gap, width, stress, length, solids = POLYSILICON}, {water: ofWater, bridges}) {
+function shorterBy({logarithms: [median]}, state, {energy, tension}, stoppers) { // at a voltage
+  const [low, high] = stoppers.sides.map((side) => (side * 1e-6) ** 2), middle = middleOf(state);
+  const patch = {...middle, area: Math.min(Math.max(middle.area, low), high)};
+  const pull = Math.exp(-reciprocals(patch, stoppers).logarithms[0]) / patch.area;
+  return ((1 + energy / (heldBy(state) / (Math.exp(median) ** 8 * pull))) * (1 + tension / pull)) ** -0.125;
+}
+function ofBridge({thickness, gap, width, stress, length, added = 0, tension = 0, solids = POLYSILICON}, {water: ofWater, bridges, stoppers}) {
   const modulus = solids.beamModulus, closed = stretchedBy(stress, thickness, modulus);
+  const stateOf = (heights, water) => ({heights, film: water, thickness, gap, width, modulus, inContact: solids.modulus, attraction: attractionOf(solids, water, ofWater)});
   return {
     lengths: (heights, water) => {
       const sizes = {thickness, gap, width, stress};
@@ -225,8 +233,11 @@ function ofBridge({thickness, gap, width, stress, length, solids = POLYSILICON},
         const outside = !(low * UNITS[unit] <= sizes[name] && sizes[name] <= high * UNITS[unit]), symbol = unit.replace("u", "µ");
         if (outside) throw new NotLearnt(`the ${name} of a bridge must be from ${low} to ${high} ${symbol}`);
       }
-      const attraction = attractionOf(solids, water, ofWater);
-      return lengthsOfBridge({heights, film: water, thickness, gap, width, modulus, inContact: solids.modulus, attraction}, closed, bridges);
+      return lengthsOfBridge(stateOf(heights, water), closed, bridges);
+    },
+    closedOn: (pairs, found, water) => {
+      const factors = pairs.map((heights, k) => tension ? shorterBy(found[k], stateOf(heights, water), {energy: added, tension}, stoppers) : 1);
+      return stretchedBy(stress, thickness, modulus, Math.min(...factors));
     },
     inDryAir: () => { throw new NotLearnt("a bridge was not learnt in dry air"); },
     closed, errors: (part) => part.bridges, stated: length, row: ({length, intervals}) => ({size: length, intervals}),
@@ -463,6 +474,7 @@ function withoutVoltage(length, drive) {
   return cube > 0 ? cube ** (-1 / 3) : Infinity;
 }
 const drivenBy = (drive) => ({length: (bare) => drive ? atVoltage(bare, drive) : bare, bare: (length) => withoutVoltage(length, drive)});
+const pulledBy = (added) => ({length: (bare) => bare / (1 + added * bare), bare: (length) => added * length < 1 ? length / (1 - added * length) : Infinity});
 
 // answer
 const FRACTIONS = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6], STUDENT = {90: 2.353363, 95: 3.182446};
@@ -476,27 +488,26 @@ function centre(one, score) {
 }
 function answer(question, table) {
   const kind = question.sides ? ofStopper : "stress" in question ? ofBridge : ofCantilever;
-  const {lengths, inDryAir, closed, errors, stated, row} = kind(question, table);
+  const {lengths, inDryAir, closed, closedOn, errors, stated, row} = kind(question, table), pairs = [question.stated, ...question.members];
   const solids = question.solids || POLYSILICON, {wetting} = solids, temperature = question.temperature || REFERENCE;
   const isOfPolysilicon = temperature === REFERENCE && Object.keys(POLYSILICON).every((key) => solids[key] === POLYSILICON[key]);
   const errorsOf = (part) => isOfPolysilicon || !part.margins_of_other_solids ? part : {...part, margins: part.margins_of_other_solids};
   const airs = question.humidities.map((air) => {
-    const isHumid = air > 0 && wetting > ROUNDING;
-    const water = isHumid ? film(air, temperature, wetting, table.water) : null;
-    const of = isHumid ? (each) => lengths(each, water) : inDryAir;
-    return {water, stated: of(question.stated), members: question.members.map(of), errors: errorsOf(errors(isHumid ? table : table.dry))};
+    const isHumid = air > 0 && wetting > ROUNDING, water = isHumid ? film(air, temperature, wetting, table.water) : null;
+    const found = pairs.map((each) => isHumid ? lengths(each, water) : inDryAir(each));
+    return {water, stated: found[0], members: found.slice(1), errors: errorsOf(errors(isHumid ? table : table.dry)), closed: closedOn ? closedOn(pairs, found, water) : closed};
   });
   const once = (p) => -Math.expm1(Math.log1p(-p) / question.touchdowns);
   const rows = FRACTIONS.map((fraction) => {
     const score = normalScore(once(fraction)), ends = {};
     for (const confidence of ["90", "95"]) {
-      const both = airs.map((one) => endsOf(one, score, confidence).map((end) => closed.length(Math.exp(end))));
+      const both = airs.map((one) => endsOf(one, score, confidence).map((end) => one.closed.length(Math.exp(end))));
       ends[confidence] = [0, 1].map((side) => Math.min(...both.map((each) => each[side])));
     }
-    const length = (one) => Math.exp(logarithmOf(one, score, question.averaged));
-    return {fraction, ...row({length: closed.length(Math.min(...airs.map(length))), intervals: ends})};
+    const length = (one) => one.closed.length(Math.exp(logarithmOf(one, score, question.averaged)));
+    return {fraction, ...row({length: Math.min(...airs.map(length)), intervals: ends})};
   });
-  return {rows, stuck: stated ? stuck(question, airs, closed.bare(stated)) : null, life: question.sides ? null : lifeOf(question),
+  return {rows, stuck: stated ? stuck(question, airs, stated) : null, life: question.sides ? null : lifeOf(question),
     flat: worstOnFlats(question, airs.map(({water}) => water))};
 }
 const logarithmOf = (one, score, averaged) => averaged ? centre(one, score)[0] : Math.log(lengthAt(one.stated, score));
@@ -513,9 +524,9 @@ function scoreAt(logarithm, value) {
   return high;
 }
 const after = (score, touchdowns) => -Math.expm1(touchdowns * Math.log1p(-fractionOf(score)));
-function stuck(question, airs, bare) {
-  const value = Math.log(bare), found = airs.map((one) => {
-    const lines = [(score) => logarithmOf(one, score, question.averaged), ...[1, 0].map((k) => (score) => endsOf(one, score, "95")[k])];
+function stuck(question, airs, stated) {
+  const found = airs.map((one) => {
+    const value = Math.log(one.closed.bare(stated)), lines = [(score) => logarithmOf(one, score, question.averaged), ...[1, 0].map((k) => (score) => endsOf(one, score, "95")[k])];
     return lines.map((line) => after(scoreAt(line, value), question.touchdowns));
   });
   return [0, 1, 2].map((k) => Math.max(...found.map((each) => each[k])));
