@@ -34,11 +34,11 @@ from stiction.estimate.closed.bending import end_stiffness
 from stiction.estimate.closed.flats import FlatBound, FlatPull
 from stiction.estimate.closed.life import BeamLife
 from stiction.estimate.force import pull_off
-from stiction.estimate.length import LengthRow, Lengths, NotLearnt, falling, known_at, of_solids
-from stiction.estimate.solids import OF_POLYSILICON, Attraction
+from stiction.estimate.length import LengthRow, Lengths, NotLearnt, falling, known_at, on_solids
+from stiction.estimate.solids import OF_POLYSILICON, BesideWater
 from stiction.estimate.state import OF_PATCHES, Film, PatchState, film
 from stiction.estimate.statistics import Heights
-from stiction.estimate.table import ATTRACTION, Surrogate
+from stiction.estimate.table import Surrogate, processes
 
 #: Names of the coordinates.
 COORDINATES = (
@@ -96,8 +96,13 @@ class MiddleState:
     stress: float  #: [Pa]
     modulus: float  #: E of the bridge [Pa]
     modulus_in_contact: float  #: E of the solids [Pa]
-    attraction: Attraction = OF_POLYSILICON
+    beside_water: BesideWater = OF_POLYSILICON
     names: ClassVar[tuple[str, ...]] = COORDINATES
+
+    @property
+    def as_polysilicon(self) -> "MiddleState":
+        """State itself. ASSUME: of bridges, the stiffness of the solids acts by the coordinates alone."""
+        return self
 
     @property
     def held(self) -> float:
@@ -119,7 +124,7 @@ class MiddleState:
     def patch(self) -> PatchState:
         """Middle in contact."""
         area = self.width * self._width_in_contact
-        return PatchState(self.heights, self.film, area, self.modulus_in_contact, self.attraction)
+        return PatchState(self.heights, self.film, area, self.modulus_in_contact, self.beside_water)
 
     @property
     def coordinates(self) -> tuple[float, ...]:
@@ -153,7 +158,7 @@ def known_patch(patch: PatchState, learnt: Mapping[str, Any]) -> PatchState:
     return replace(patch, area=min(max(patch.area, low), high))
 
 
-def lengths(state: MiddleState, middle: Surrogate, full: Surrogate, *attraction: Surrogate) -> Lengths:
+def lengths(state: MiddleState, middle: Surrogate, full: Surrogate, *changes: Surrogate) -> Lengths:
     """Lengths without stress that are held as well as those under it [m].
 
     Raises
@@ -161,8 +166,8 @@ def lengths(state: MiddleState, middle: Surrogate, full: Surrogate, *attraction:
     NotLearnt
         If the state is beyond what was learnt.
     """
-    change, values = (known_at(process, state.coordinates, COORDINATES) for process in (full, middle))
-    summits = falling(of_solids(values, state, *attraction), math.log(state.flooded_length))
+    change = known_at(full, state.coordinates, COORDINATES)
+    summits = falling(on_solids(middle, state, *changes), math.log(state.flooded_length))
     return changed(summits, change["shift"], change["power"])
 
 
@@ -228,14 +233,13 @@ class Bridge(Asked):
     def lengths(self, heights: Heights, water: Film, table: Mapping[str, Any], *_tips: Surrogate | None) -> Lengths:
         """Lengths without stress that are held as well as those that its middle holds, on the sum of two surfaces."""
         self._refuse(table["bridges"]["ranges"])
-        learnt = (Surrogate(**table["bridges"][name]) for name in ("middle", "full", *ATTRACTION))
-        return lengths(self._state(heights, water), *learnt)
+        return lengths(self._state(heights, water), *processes(table["bridges"], "middle", "full"))
 
     def _state(self, heights, water):
         """State on the sum of two surfaces in a film."""
         sizes = self.thickness, self.gap, self.width, self.stress
-        solids, attraction = self.solids, self.solids.attraction(water.energy)
-        return MiddleState(heights, water, *sizes, solids.beam_modulus, solids.modulus, attraction)
+        solids, ratios = self.solids, self.solids.beside_water(water.energy)
+        return MiddleState(heights, water, *sizes, solids.beam_modulus, solids.modulus, ratios)
 
     def in_dry_air(self, _heights: Heights, _table: Mapping[str, Any]) -> Lengths:
         """Lengths in dry air, which are not known."""

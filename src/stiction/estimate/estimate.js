@@ -44,17 +44,20 @@ function film(humidity, temperature, wetting, [tension, volume]) {
 // solids
 const POLYSILICON = {modulus: 164e9, beamModulus: 164e9, throughWater: 9.75e-20, inDryAir: 1.865e-19, wetting: 2}, ROUNDING = 1e-9;
 const OF_WATER = 37e-21, following = (throughWater) => (Math.sqrt(throughWater) + Math.sqrt(OF_WATER)) ** 2;
-function attractionOf({throughWater, inDryAir}, {energy}, [tension]) {
+function besideWater({throughWater, inDryAir, modulus}, {energy}, [tension]) {
   const own = POLYSILICON, byWater = own.wetting * tension / energy, water = throughWater / own.throughWater * byWater;
-  return [water, inDryAir / own.inDryAir * byWater / (following(water * own.throughWater) / following(own.throughWater))];
+  const air = inDryAir / own.inDryAir * byWater / (following(water * own.throughWater) / following(own.throughWater));
+  return [water, air, modulus / own.modulus * byWater];
 }
-const ATTRACTION = ["attraction", "attraction_through_air"], OF_SOLIDS = [
+const asPolysilicon = (state) => ({...state, modulus: state.modulus / state.besideWater[2]});
+const CHANGES = ["attraction", "attraction_through_air", "stiffness"], OF_SOLIDS = [
   "attraction of the solids beside that of the water (from Hamaker constant and contact angles)",
-  "attraction of the solids through air beside that through water (from Hamaker constants and contact angles)"];
-function ofSolids(values, state, place, part) {
-  const by = state.attraction.map(Math.log), changed = {...values};
-  ATTRACTION.forEach((name, k) => {
-    if (!by[k]) return;
+  "attraction of the solids through air beside that through water (from Hamaker constants and contact angles)",
+  "stiffness of the solids beside that of the water (from moduli and contact angles)"];
+function onSolids(process, ratios, place, part) {
+  const by = ratios.map(Math.log), changed = {...known(process, place, part.coordinates)};
+  CHANGES.forEach((name, k) => {
+    if (!by[k] || !part[name]) return;
     const byOne = known(part[name], [...place, ...by], [...part.coordinates, ...OF_SOLIDS]);
     for (const each of ["at_0", "at_1", "at_2"]) changed[each] += by[k] * byOne[each];
   });
@@ -106,8 +109,7 @@ function falling(values, shift) {
   return {logarithms: [first, second, third], slope: Math.max(LEAST, values.slope)};
 }
 function onSummits(state, gap, table) {
-  const place = coordinates(state);
-  return falling(ofSolids(known(table.tips, place, table.coordinates), state, place, table), Math.log(1.5 * gap / floodedSlope(state)));
+  return falling(onSolids(table.tips, state.besideWater, coordinates(asPolysilicon(state)), table), Math.log(1.5 * gap / floodedSlope(state)));
 }
 function lengthAt({logarithms: [first, second, third], slope}, score) {
   const [, b, c] = SCORES;
@@ -133,8 +135,8 @@ function lengths(state, gap, table) {
 
 // force: its reciprocal stands for a length
 function reciprocals(patch, stoppers) {
-  const {forces, full, coordinates: names} = stoppers, place = ofPatch(patch), {ratio, power} = known(full, place, names);
-  const values = ofSolids(known(forces, place, names), patch, place, stoppers);
+  const {ratio, power} = known(stoppers.full, ofPatch(patch), stoppers.coordinates);
+  const values = onSolids(stoppers.forces, patch.besideWater, ofPatch(asPolysilicon(patch)), stoppers);
   return changedBy(falling(values, -Math.log(tensionOf(patch.film) * patch.area)), ratio, Math.max(1, power));
 }
 function changedBy({logarithms, slope}, ratio, power) {
@@ -185,7 +187,7 @@ function ofStopper({sides, force, added, solids = POLYSILICON}, {water: ofWater,
   };
   return {
     lengths: (heights, water) =>
-      reciprocals({heights, film: water, area: areaOf(stoppers), modulus, attraction: attractionOf(solids, water, ofWater)}, stoppers),
+      reciprocals({heights, film: water, area: areaOf(stoppers), modulus, besideWater: besideWater(solids, water, ofWater)}, stoppers),
     inDryAir: (heights) => dryReciprocals({heights, constant: solids.inDryAir, area: areaOf(dry.stoppers), modulus}, dry.stoppers),
     closed: pulledBy(added || 0), errors: (part) => part.stoppers, stated: force && 1 / force,
     row: ({length, intervals}) => ({size: 1 / length, intervals: Object.fromEntries(Object.entries(intervals).map(([key, [low, high]]) => [key, [1 / high, 1 / low]]))}),
@@ -222,8 +224,8 @@ function ofMiddle(state, {decay}) {
   return [...ofPatch(middleOf(state)), Math.log(state.gap / state.film.height), decay * contact];
 }
 function lengthsOfBridge(state, closed, bridges) {
-  const {middle, full, coordinates: names} = bridges, place = ofMiddle(state, closed), {shift, power} = known(full, place, names);
-  const values = ofSolids(known(middle, place, names), state, place, bridges);
+  const place = ofMiddle(state, closed), {shift, power} = known(bridges.full, place, bridges.coordinates);
+  const values = onSolids(bridges.middle, state.besideWater, place, bridges);
   const {logarithms, slope} = falling(values, Math.log(floodedLength(state))), [median] = logarithms;
   return {logarithms: logarithms.map((each) => median + shift + power * (each - median)), slope: power * slope};
 }
@@ -235,7 +237,7 @@ function shorterBy({logarithms: [median]}, state, {energy, tension}, stoppers) {
 }
 function ofBridge({thickness, gap, width, stress, length, added = 0, tension = 0, solids = POLYSILICON}, {water: ofWater, bridges, stoppers}) {
   const modulus = solids.beamModulus, closed = stretchedBy(stress, thickness, modulus);
-  const stateOf = (heights, water) => ({heights, film: water, thickness, gap, width, modulus, inContact: solids.modulus, attraction: attractionOf(solids, water, ofWater)});
+  const stateOf = (heights, water) => ({heights, film: water, thickness, gap, width, modulus, inContact: solids.modulus, besideWater: besideWater(solids, water, ofWater)});
   return {
     lengths: (heights, water) => {
       const sizes = {thickness, gap, width, stress};
@@ -256,7 +258,7 @@ function ofBridge({thickness, gap, width, stress, length, added = 0, tension = 0
 function ofCantilever({thickness, gap, width, length, added, solids = POLYSILICON}, table) {
   const stiffness = solids.beamModulus * thickness ** 3 / gap ** 2, {modulus} = solids;
   return {
-    lengths: (heights, water) => lengths({heights, film: water, stiffness, width, modulus, attraction: attractionOf(solids, water, table.water)}, gap, table),
+    lengths: (heights, water) => lengths({heights, film: water, stiffness, width, modulus, besideWater: besideWater(solids, water, table.water)}, gap, table),
     inDryAir: (heights) => dryLengths({heights, constant: solids.inDryAir, stiffness, width, modulus}, gap, table.dry),
     closed: drivenBy(8 * (added || 0) / (3 * stiffness * gap ** 4)), errors: (part) => part, stated: length,
     row: ({length, intervals}) => {

@@ -19,10 +19,10 @@ from stiction.estimate.asked import Asked
 from stiction.estimate.closed import flats
 from stiction.estimate.closed.flats import FlatBound, FlatPull
 from stiction.estimate.closed.life import StopperLife
-from stiction.estimate.length import LengthRow, Lengths, NotLearnt, falling, known_at, of_solids
+from stiction.estimate.length import LengthRow, Lengths, NotLearnt, falling, known_at, on_solids
 from stiction.estimate.state import OF_PATCHES, Film, PatchState
 from stiction.estimate.statistics import Heights
-from stiction.estimate.table import ATTRACTION, Surrogate
+from stiction.estimate.table import Surrogate, processes
 from stiction.estimate.voltage import Pulled
 
 
@@ -40,7 +40,7 @@ class ForceRow:
         return self.force
 
 
-def reciprocals(patch: PatchState, forces: Surrogate, full: Surrogate, *attraction: Surrogate) -> Lengths:
+def reciprocals(patch: PatchState, forces: Surrogate, full: Surrogate, *changes: Surrogate) -> Lengths:
     """Reciprocals of the pull-off forces of a patch [1/N].
 
     Raises
@@ -48,8 +48,8 @@ def reciprocals(patch: PatchState, forces: Surrogate, full: Surrogate, *attracti
     NotLearnt
         If the patch is beyond what was learnt.
     """
-    change, values = (known_at(process, patch.coordinates, OF_PATCHES) for process in (full, forces))
-    summits = falling(of_solids(values, patch, *attraction), -math.log(patch.flooded_force))
+    change = known_at(full, patch.coordinates, OF_PATCHES)
+    summits = falling(on_solids(forces, patch, *changes), -math.log(patch.flooded_force))
     return _changed(summits, change["ratio"], max(1.0, change["power"]))
 
 
@@ -73,7 +73,7 @@ def pull_off(patch: PatchState, learnt: Mapping[str, Any]) -> float:
 
 def _reciprocals_of(patch, learnt):
     """Reciprocals of the forces of a patch."""
-    return reciprocals(patch, *(Surrogate(**learnt[name]) for name in ("forces", "full", *ATTRACTION)))
+    return reciprocals(patch, *processes(learnt, "forces", "full"))
 
 
 @dataclass(frozen=True)
@@ -114,8 +114,8 @@ class Stopper(Asked):
 
     def lengths(self, heights: Heights, water: Film, table: Mapping[str, Any], *_tips: Surrogate | None) -> Lengths:
         """Reciprocals of its pull-off forces on the sum of two surfaces [1/N]."""
-        learnt, attraction = table["stoppers"], self.solids.attraction(water.energy)
-        patch = PatchState(heights, water, self._area(learnt), self.solids.modulus, attraction)
+        learnt, ratios = table["stoppers"], self.solids.beside_water(water.energy)
+        patch = PatchState(heights, water, self._area(learnt), self.solids.modulus, ratios)
         return _reciprocals_of(patch, learnt)
 
     def in_dry_air(self, heights: Heights, table: Mapping[str, Any]) -> Lengths:

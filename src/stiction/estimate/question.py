@@ -21,7 +21,7 @@ from stiction.estimate.length import Impossible, LengthRow, Lengths, NotLearnt, 
 from stiction.estimate.solids import SolidPair
 from stiction.estimate.state import Film, TipState, stiffness_of
 from stiction.estimate.statistics import Heights, moments_of, slope_of
-from stiction.estimate.table import ATTRACTION, Surrogate
+from stiction.estimate.table import Surrogate, processes
 from stiction.estimate.voltage import KEYS as OF_VOLTAGES
 from stiction.estimate.voltage import Driven, drive_of, energy_of, tension_of
 
@@ -146,9 +146,9 @@ class Question(Asked):
         self, heights: Heights, water: Film, table: Mapping[str, Any], tips: Surrogate, full: Surrogate | None
     ) -> Lengths:
         """Lengths at which it sticks on the sum of two surfaces [m]."""
-        solids, attraction = self.solids, self.solids.attraction(water.energy)
-        state = TipState(heights, water, self._stiffness, self.width, solids.modulus, attraction)
-        return lengths(state, self.gap, tips, full, *(Surrogate(**table[name]) for name in ATTRACTION))
+        solids, ratios = self.solids, self.solids.beside_water(water.energy)
+        state = TipState(heights, water, self._stiffness, self.width, solids.modulus, ratios)
+        return lengths(state, self.gap, tips, full, *processes(table))
 
     def in_dry_air(self, heights: Heights, table: Mapping[str, Any]) -> Lengths:
         """Lengths at which it sticks in dry air [m]."""

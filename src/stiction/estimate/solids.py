@@ -10,7 +10,12 @@ humid air are their attractions through water and, beyond the film, through air,
 .. math:: r = \frac{\mathfrak{H}}{\mathfrak{H}_0} \frac{\Gamma_0}{\Gamma} ,
 
 1 for polysilicon that water wets perfectly at 300 K. Through air, r is :math:`s \, c(r)` with the part c that follows
-from that through water by the combining relation, c(1) = 1. The changes of lengths and forces by r and s are learnt.
+from that through water by the combining relation, c(1) = 1. Nor is their modulus beside the energy of a film of some
+height what it is on polysilicon,
+
+.. math:: q = \frac{E}{E_0} \frac{\Gamma_0}{\Gamma} .
+
+The changes of lengths and forces by r, s and q are learnt.
 """
 
 import math
@@ -43,20 +48,21 @@ def following(through_water: float) -> float:
 
 
 @dataclass(frozen=True)
-class Attraction:
-    """Attraction of two solids beside that of the water between them, over that of polysilicon."""
+class BesideWater:
+    """Two solids beside the water between them, over polysilicon."""
 
-    through_water: float = 1.0  #: r
-    through_air: float = 1.0  #: s, beside what follows from r
+    through_water: float = 1.0  #: attraction r
+    through_air: float = 1.0  #: attraction s, beside what follows from r
+    stiffness: float = 1.0  #: q
 
     @property
-    def logarithms(self) -> tuple[float, float]:
-        """Logarithms of r and s."""
-        return math.log(self.through_water), math.log(self.through_air)
+    def logarithms(self) -> tuple[float, float, float]:
+        """Logarithms of r, s and q."""
+        return math.log(self.through_water), math.log(self.through_air), math.log(self.stiffness)
 
 
 #: Of polysilicon that water wets perfectly at 300 K.
-OF_POLYSILICON = Attraction()
+OF_POLYSILICON = BesideWater()
 
 
 @dataclass(frozen=True)
@@ -99,13 +105,14 @@ class SolidPair:
         """Whether water condenses between them, as `stiction.contact.meniscus.is_wetted`."""
         return self.wetting > ROUNDING
 
-    def attraction(self, energy: float) -> Attraction:
-        """Attraction beside that of a film of an energy [J m⁻²]."""
+    def beside_water(self, energy: float) -> BesideWater:
+        """Ratios beside a film of an energy [J m⁻²]."""
         polysilicon = SolidPair()
         by_water = polysilicon.wetting * WATER_SURFACE_ENERGY / energy
         through_water = self.through_water / polysilicon.through_water * by_water
         combined = following(through_water * polysilicon.through_water) / following(polysilicon.through_water)
-        return Attraction(through_water, self.in_dry_air / polysilicon.in_dry_air * by_water / combined)
+        through_air = self.in_dry_air / polysilicon.in_dry_air * by_water / combined
+        return BesideWater(through_water, through_air, self.modulus / polysilicon.modulus * by_water)
 
 
 def _modulus(material):

@@ -5,7 +5,7 @@ python -m stiction.estimate.learning.make FOLDER
 
 import json
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -28,8 +28,8 @@ from stiction.estimate.learning.design import SIDES as SIDES_OF_PATCHES
 from stiction.estimate.learning.errors import Tested, conformal, rest_of, scores, tested, tested_bridges, tested_forces
 from stiction.estimate.learning.fit import Fitted, fitted, group, rounded
 from stiction.estimate.learning.other_solids import rows as of_solids
-from stiction.estimate.learning.other_solids.attraction import THROUGH_AIR, THROUGH_WATER
-from stiction.estimate.learning.other_solids.rows import AttractedRows
+from stiction.estimate.learning.other_solids.ratios import ALL, WITH_BRIDGES, LearntRatio
+from stiction.estimate.learning.other_solids.rows import RowsOfRatio
 from stiction.estimate.learning.rows import (
     OF_FULL,
     OF_RATIO,
@@ -41,7 +41,7 @@ from stiction.estimate.learning.rows import (
 from stiction.estimate.learning.training import SETS, TrainingTips, air_of, base, full_contact_of, plan_of, water_of
 from stiction.estimate.length import normal_score
 from stiction.estimate.state import COORDINATES, OF_PATCHES
-from stiction.estimate.table import ATTRACTION, FILE, Surrogate
+from stiction.estimate.table import CHANGES, FILE, Surrogate, processes
 from stiction.models import SIDES
 from stiction.progress import without_progress
 from stiction.run.atomic import save_text
@@ -70,7 +70,7 @@ def table_of(folder: Path) -> dict[str, Any]:
         "coordinates": COORDINATES,
         "tips": tips.content,
         "full": full.content,
-        **attraction_of(of_solids.rows_of_tips, folder, modulus),
+        **changes_of(of_solids.rows_of_tips, folder, modulus, ALL),
         "stoppers": stoppers_of(folder, modulus),
         "bridges": bridges_of(folder, modulus),
         "dry": in_dry_air(folder, modulus),
@@ -102,11 +102,13 @@ def in_dry_air(folder: Path, modulus: float) -> dict[str, Any]:
     return section | errors_of(dry_rows.tested, folder, modulus, tips, full)
 
 
-def attraction_of(rows_of: Callable[..., AttractedRows], folder: Path, modulus: float) -> dict[str, Any]:
-    """Processes of the changes of lengths or forces by the attraction of other solids."""
-    learnt = (rows_of(folder, modulus, ratio) for ratio in (THROUGH_WATER, THROUGH_AIR))
-    processes = (fitted(each.rows, "at_2", each.columns, 90).content for each in learnt)
-    return dict(zip(ATTRACTION, processes, strict=True))
+def changes_of(
+    rows_of: Callable[..., RowsOfRatio], folder: Path, modulus: float, ratios: Sequence[LearntRatio]
+) -> dict[str, Any]:
+    """Processes of the changes of lengths or forces by the first ratios of other solids."""
+    learnt = (rows_of(folder, modulus, ratio) for ratio in ratios)
+    changes = (fitted(each.rows, "at_2", each.columns, 90).content for each in learnt)
+    return dict(zip(CHANGES, changes, strict=False))
 
 
 def stoppers_of(folder: Path, modulus: float) -> dict[str, Any]:
@@ -114,7 +116,7 @@ def stoppers_of(folder: Path, modulus: float) -> dict[str, Any]:
     forces = fitted(rows_of_patches(folder, "learn", modulus), "at_2", range(len(OF_PATCHES)))
     full = fitted(rows_of_ratios(folder, "learn", modulus), "ratio", OF_RATIO, 90)
     section = {"sides": SIDES_OF_PATCHES, "coordinates": OF_PATCHES, "forces": forces.content, "full": full.content}
-    section |= attraction_of(of_solids.rows_of_patches, folder, modulus)
+    section |= changes_of(of_solids.rows_of_patches, folder, modulus, ALL)
     return section | errors_of(tested_forces, folder, modulus, forces, full)
 
 
@@ -129,7 +131,7 @@ def bridges_of(folder: Path, modulus: float) -> dict[str, Any]:
         "middle": middle.content,
         "full": full.content,
     }
-    section |= attraction_of(of_solids.rows_of_bridges, folder, modulus)
+    section |= changes_of(of_solids.rows_of_bridges, folder, modulus, WITH_BRIDGES)
     return section | errors_of(tested_bridges, folder, modulus, middle, full)
 
 
@@ -223,9 +225,9 @@ def margins_of_other_solids(folder: Path, table: Mapping[str, Any]) -> dict[str,
 
 def _growth(test, folder, section, first):
     """Factors of the margins of a section of the table on other solids, by confidence."""
-    processes = [Surrogate(**rounded(section[name])) for name in (first, "full", *ATTRACTION)]
+    learnt = processes(rounded(section), first, "full")
     sets = [f"decide_{law}" for law in (SurfaceLaw.TYPICAL, SurfaceLaw.ANY)]
-    surfaces = [surface for name in sets for surface in test(folder, name, TESTED, processes, as_polysilicon=False)]
+    surfaces = [surface for name in sets for surface in test(folder, name, TESTED, learnt, as_polysilicon=False)]
     errors = scores(surfaces, section["rest"])
     margins = section["margins"]
     return {name: max(1.0, conformal(errors, int(name) / 100) / margins[name]) for name in CONFIDENCES}

@@ -25,6 +25,7 @@ from stiction.estimate.learning.training import (
     changes_of,
     full_contact_of,
     main,
+    of_beam,
     water_of,
     with_materials,
 )
@@ -81,17 +82,11 @@ def with_solids(plan: Plan, temperature: float, materials: list[dict[str, Any]])
     return with_materials(Plan(plan.config | {"water": {"temperature_K": temperature}}), *materials)
 
 
-def of_beam(point: Point, materials: list[dict[str, Any]], valid: dict[str, Any]) -> Point:
-    """Point of which `stiction.estimate.learning.training.plan_of` finds a gap for its stiffness and its own beam."""
-    relative = materials[0]["young_modulus_GPa"] / valid["solid"]["young_modulus_GPa"]
-    return replace(point, stiffness=point.stiffness / relative)
-
-
 def computed(point: Point, name: str, valid: dict[str, Any]) -> dict[str, Any]:
     """Numbers of the tips of one point of a set."""
     effort, (temperature, materials) = SETS[name], drawn(point, SETS[name].seed)
     humidity = humidity_of(temperature, materials, states(1, point.number, effort.seed)[0, 0])
-    plan = with_solids(training.plan_of(of_beam(point, materials, valid), valid), temperature, materials)
+    plan = with_solids(training.plan_of(of_beam(point, materials[0], valid), valid), temperature, materials)
     number = effort.tips + round(effort.tips_by_width / to_si(point.width, "um"))
     tips, water = TrainingTips.of(point, plan, number, effort.seed), water_of(plan)
     of_full = full_contact_of(point, plan, humidity, effort)

@@ -1,6 +1,6 @@
-"""Rows about other solids: how their attraction changes lengths and forces, and errors of the estimate on them.
+"""Rows about other solids: how their ratios change lengths and forces, and errors of the estimate on them.
 
-From the files of `stiction.estimate.learning.other_solids.attraction` and
+From the files of `stiction.estimate.learning.other_solids.ratios` and
 `stiction.estimate.learning.other_solids.points`.
 """
 
@@ -21,8 +21,8 @@ from stiction.estimate.learning.bridge_rows import states_of as bridges_of
 from stiction.estimate.learning.design import Point
 from stiction.estimate.learning.errors import Tested, beside, lengths_of
 from stiction.estimate.learning.fit import DesignRows
-from stiction.estimate.learning.other_solids import attraction, points
-from stiction.estimate.learning.other_solids.attraction import LearntRatio, stored_attraction
+from stiction.estimate.learning.other_solids import points, ratios
+from stiction.estimate.learning.other_solids.ratios import LearntRatio, stored_ratios
 from stiction.estimate.learning.rows import (
     OF_FULL,
     OF_RATIO,
@@ -39,13 +39,13 @@ from stiction.estimate.state import COORDINATES, OF_PATCHES, PatchState, TipStat
 from stiction.estimate.statistics import of_pair
 from stiction.estimate.table import Surrogate
 
-#: Coordinates of tips, patches and bridges that changes by the attraction depend on. ASSUME: no others.
+#: Coordinates of tips, patches and bridges that changes by ratios depend on. ASSUME: no others.
 _OF_TIPS, _OF_PATCHES, _OF_BRIDGES = (OF_FULL, COORDINATES), (OF_RATIO, OF_PATCHES), (OF_RATIO, OF_BRIDGES)
 
 
 @dataclass(frozen=True)
-class AttractedRows:
-    """Rows of the change by one logarithm of the attraction, and the coordinates that it depends on."""
+class RowsOfRatio:
+    """Rows of the change by the logarithm of one ratio, and the coordinates that it depends on."""
 
     rows: DesignRows
     columns: tuple[int, ...]  #: the last is that logarithm
@@ -59,7 +59,7 @@ class _Changed:
     of_polysilicon: dict[str, Any]
     numbers: dict[str, Any]
     before: dict[str, Any]
-    logarithms: tuple[float, ...]  #: of the attraction, that of the ratio is the last
+    logarithms: tuple[float, ...]  #: of the ratios, its own is the last
 
     def each(self, name):
         """Numbers of a name in each air, with those without the ratio."""
@@ -74,7 +74,7 @@ def _changed(folder, ratio, place, part=""):
             number = next(each.number for each in sets[name].all if each.sides == point.sides)
             before = folder / ratio.before.folder / part if ratio.before else folder / place
             of_both = [_loaded(each / name / f"{number:04}.npz") for each in (folder / place, before)]
-            logarithms = stored_attraction(numbers).logarithms[: ratio.number]
+            logarithms = stored_ratios(numbers).logarithms[: ratio.number]
             yield _Changed(point, of_both[0], numbers, of_both[1], logarithms)
 
 
@@ -85,23 +85,23 @@ def _loaded(path):
 
 
 def _rows(entries, columns, names):
-    """Rows of the change of quantities by the last logarithm of the attraction, from both at each state."""
+    """Rows of the change of quantities by the logarithm of the last ratio, from both at each state."""
     surface, coordinates, changed, before, logarithms = zip(*entries, strict=True)
     logarithms = np.array(logarithms)
     by, pairs = logarithms[:, -1], list(zip(changed, before, strict=True))
     values = {name: np.array([more[name] - less[name] for more, less in pairs]) / by for name in NAMES[:3]}
     rows = DesignRows(np.column_stack([coordinates, logarithms]), values, np.array(surface), 1 / np.abs(by))
-    return AttractedRows(rows, (*columns, *range(len(names), len(names) + logarithms.shape[1])))
+    return RowsOfRatio(rows, (*columns, *range(len(names), len(names) + logarithms.shape[1])))
 
 
-def rows_of_tips(folder: Path, modulus: float, ratio: LearntRatio) -> AttractedRows:
+def rows_of_tips(folder: Path, modulus: float, ratio: LearntRatio) -> RowsOfRatio:
     """Rows of all tips on summits at the points of a ratio."""
     entries = (
         (one.point.number, state.coordinates, *(of_tips(slopes / state.flooded_slope) for slopes in both), by)
         for one in _changed(folder, ratio, "")
         for by in [one.logarithms]
         for states, of_air in zip(
-            states_of(one.point, one.of_polysilicon["airs"][: attraction.AIRS], modulus),
+            states_of(one.point, one.of_polysilicon["airs"][: ratios.AIRS], modulus),
             one.each("slopes"),
             strict=False,
         )
@@ -110,7 +110,7 @@ def rows_of_tips(folder: Path, modulus: float, ratio: LearntRatio) -> AttractedR
     return _rows(entries, *_OF_TIPS)
 
 
-def rows_of_patches(folder: Path, modulus: float, ratio: LearntRatio) -> AttractedRows:
+def rows_of_patches(folder: Path, modulus: float, ratio: LearntRatio) -> RowsOfRatio:
     """Rows of all patches on summits at the points of a ratio."""
     entries = (
         (one.point.number, patch.coordinates, *(of_forces(each, patch) for each in both), one.logarithms)
@@ -120,7 +120,7 @@ def rows_of_patches(folder: Path, modulus: float, ratio: LearntRatio) -> Attract
     return _rows(entries, *_OF_PATCHES)
 
 
-def rows_of_bridges(folder: Path, modulus: float, ratio: LearntRatio) -> AttractedRows:
+def rows_of_bridges(folder: Path, modulus: float, ratio: LearntRatio) -> RowsOfRatio:
     """Rows of all bridges on summits at the points of a ratio whose lengths are known with and without it."""
     entries = (
         (one.point.number, bridge.coordinates, *(of_middle(bridge, each) for each in both), one.logarithms)
@@ -158,7 +158,7 @@ def tested(
     for point, numbers, solids, water in _stored(folder / points.FOLDER, name, as_polysilicon):
         if np.isfinite(numbers["changed"]).all():
             sizes = point.stiffness, to_si(point.width, "um")
-            state = TipState(of_pair(point.sides), water, *sizes, solids.modulus, solids.attraction(water.energy))
+            state = TipState(of_pair(point.sides), water, *sizes, solids.modulus, solids.beside_water(water.energy))
             true = lengths_of(of_tips(numbers["changed"]), math.log(1.5))
             yield beside(point, true, score, lambda state=state: lengths(state, 1.0, *processes))
 
@@ -170,7 +170,7 @@ def tested_forces(
     for point, numbers, solids, water in _stored(folder / points.FOLDER / patches.FOLDER, name, as_polysilicon):
         if np.isfinite(numbers["ratio"]):
             area = float(np.prod(to_si(numbers["sides"], "um")))
-            patch = PatchState(of_pair(point.sides), water, area, solids.modulus, solids.attraction(water.energy))
+            patch = PatchState(of_pair(point.sides), water, area, solids.modulus, solids.beside_water(water.energy))
             pressures = numbers["forces"][0].astype(float)
             changed = change_of(numbers).of(pressures)(pressures)
             true = lengths_of(of_forces(changed, patch), -math.log(patch.flooded_force))
