@@ -15,13 +15,15 @@ from functools import cached_property
 from typing import Any
 
 from stiction.estimate.bridge import Bridge, Stretched
+from stiction.estimate.closed.flats import FlatBound, worst
 from stiction.estimate.closed.life import BeamLife, Dried, StopperLife, Touching
 from stiction.estimate.force import ForceRow, Stopper
 from stiction.estimate.length import Impossible, LengthRow, Lengths, NotLearnt, after, normal_score, score_at
+from stiction.estimate.promise import promise
 from stiction.estimate.question import Question
 from stiction.estimate.state import THINNEST, film
 from stiction.estimate.table import Surrogate
-from stiction.estimate.voltage import Driven
+from stiction.estimate.voltage import Driven, Pulled
 
 #: Fractions of stuck devices in the answer.
 FRACTIONS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
@@ -82,6 +84,11 @@ class Estimate:
         return math.nan if self.is_fast else self.use_if_slow
 
     @property
+    def promise(self) -> str | None:
+        """Sentence on what the size to use promises, none where a run alone knows this size."""
+        return None if self.is_fast else promise(CONFIDENCES[0], self.is_force)
+
+    @property
     def is_unsafe(self) -> bool:
         """Whether its stated size is beyond that to use even if it separates slowly."""
         size = self.question.size
@@ -91,6 +98,15 @@ class Estimate:
     def is_fast(self) -> bool:
         """Whether a shock can separate it faster than its water evaporates, which the estimate does not know."""
         return self.question.surroundings.shock > 0 and not all(map(self.question.is_dry, self.question.humidities))
+
+    @cached_property
+    def flat(self) -> FlatBound:
+        """What flat surfaces in contact hold in the worst of its airs, without its voltage, as column *bound* of a run.
+
+        No surface holds a shorter beam, or a larger force of a stopper. Its tip is another matter: see its field.
+        """
+        asked = self.question
+        return worst([asked.on_flats(asked.attractions(air)) for air in asked.humidities], self.is_force)
 
     @cached_property
     def touching(self) -> Touching:
@@ -141,7 +157,7 @@ class LengthsInAir:
     stated: Lengths
     members: tuple[Lengths, ...]  #: on typical surfaces in place of a partly assumed one
     averaged: bool  #: as of `stiction.estimate.question.Question`
-    closed: Driven | Stretched  #: form of a length from the bare one, without voltage or stress
+    closed: Driven | Pulled | Stretched  #: form of a length from the bare one, without voltage or stress
 
     def centre(self, score: float) -> tuple[float, float]:
         """Mean and scatter of the logarithm of a length [m] over surfaces like those that are assumed."""
@@ -220,7 +236,8 @@ def _in_air(question, air, table, tips, full):
     pairs += [question.members[0].get(name, beam) + question.members[1].get(name, substrate) for name in names]
     stated, *members = (_lengths(question, heights, air, table, tips, full) for heights in pairs)
     errors = _errors(question, table["dry"] if question.is_dry(air) else table)
-    return LengthsInAir(errors, stated, tuple(members), question.averaged, question.closed)
+    closed = question.closed_on(dict(zip(pairs, (stated, *members), strict=True)), air, table)
+    return LengthsInAir(errors, stated, tuple(members), question.averaged, closed)
 
 
 def _errors(question, learnt):

@@ -167,7 +167,7 @@ function dryReciprocals(patch, {forces, full, coordinates: names}) {
   const scatter = (found.logarithms[0] - found.logarithms[2]) / 2;
   return scattered(found, power, -change.ratio - (1 - power ** 2) * scatter ** 2 / 2);
 }
-function ofStopper({sides, force, solids = POLYSILICON}, {water: ofWater, stoppers, dry}) {
+function ofStopper({sides, force, added, solids = POLYSILICON}, {water: ofWater, stoppers, dry}) {
   const [one, other] = sides, {modulus} = solids;
   const areaOf = ({sides: [low, high]}) => {
     if (!sides.every((side) => low * 1e-6 <= side && side <= high * 1e-6)) throw new NotLearnt(`sides of a stopper must be from ${low} to ${high} µm`);
@@ -177,7 +177,7 @@ function ofStopper({sides, force, solids = POLYSILICON}, {water: ofWater, stoppe
     lengths: (heights, water) =>
       reciprocals({heights, film: water, area: areaOf(stoppers), modulus, attraction: attractionOf(solids, water, ofWater)}, stoppers),
     inDryAir: (heights) => dryReciprocals({heights, constant: solids.inDryAir, area: areaOf(dry.stoppers), modulus}, dry.stoppers),
-    closed: drivenBy(0), errors: (part) => part.stoppers, stated: force && 1 / force,
+    closed: pulledBy(added || 0), errors: (part) => part.stoppers, stated: force && 1 / force,
     row: ({length, intervals}) => ({size: 1 / length, intervals: Object.fromEntries(Object.entries(intervals).map(([key, [low, high]]) => [key, [1 / high, 1 / low]]))}),
   };
 }
@@ -189,9 +189,9 @@ function endStiffness(kl) {
   const force = kl < DIFFERENT ? 12 / (1 - kl ** 2 / 10 + 17 * kl ** 4 / 1680) : kl ** 2 / (1 - mean);
   return [force, force * mean / 2];
 }
-function stretchedBy(stress, thickness, modulus) {
+function stretchedBy(stress, thickness, modulus, factor = 1) {
   const decay = Math.sqrt(12 * stress / modulus) / thickness, ends = (length) => endStiffness(decay * length / 2);
-  const bare = (length) => { const [force, moment] = ends(length); return length * (864 / (force ** 2 * moment)) ** 0.125; };
+  const bare = (length) => { const [force, moment] = ends(length); return length * (864 / (force ** 2 * moment)) ** 0.125 / factor; };
   const under = (short) => {
     let length = short;
     for (let k = 0; k < 60; k++) length *= short / bare(length);
@@ -199,8 +199,9 @@ function stretchedBy(stress, thickness, modulus) {
   };
   return {bare, length: under, decay};
 }
-function floodedLength({film, thickness, gap, modulus}) {
-  return (768 * (modulus * thickness ** 3) ** 2 * gap ** 3 / (film.energy ** 2 / film.height)) ** 0.125;
+const heldBy = ({thickness, gap, modulus}) => 768 * (modulus * thickness ** 3) ** 2 * gap ** 3;
+function floodedLength(state) {
+  return (heldBy(state) / (state.film.energy ** 2 / state.film.height)) ** 0.125;
 }
 function contactOf(state) {
   return 8 * state.modulus * state.thickness ** 3 * state.gap / (floodedLength(state) ** 3 * tensionOf(state.film));
@@ -216,8 +217,15 @@ function lengthsOfBridge(state, closed, {middle, full, attraction, coordinates: 
   const {logarithms, slope} = falling(values, Math.log(floodedLength(state))), [median] = logarithms;
   return {logarithms: logarithms.map((each) => median + shift + power * (each - median)), slope: power * slope};
 }
-function ofBridge({thickness, gap, width, stress, length, solids = POLYSILICON}, {water: ofWater, bridges}) {
+function shorterBy({logarithms: [median]}, state, {energy, tension}, stoppers) { // at a voltage
+  const [low, high] = stoppers.sides.map((side) => (side * 1e-6) ** 2), middle = middleOf(state);
+  const patch = {...middle, area: Math.min(Math.max(middle.area, low), high)};
+  const pull = Math.exp(-reciprocals(patch, stoppers).logarithms[0]) / patch.area;
+  return ((1 + energy / (heldBy(state) / (Math.exp(median) ** 8 * pull))) * (1 + tension / pull)) ** -0.125;
+}
+function ofBridge({thickness, gap, width, stress, length, added = 0, tension = 0, solids = POLYSILICON}, {water: ofWater, bridges, stoppers}) {
   const modulus = solids.beamModulus, closed = stretchedBy(stress, thickness, modulus);
+  const stateOf = (heights, water) => ({heights, film: water, thickness, gap, width, modulus, inContact: solids.modulus, attraction: attractionOf(solids, water, ofWater)});
   return {
     lengths: (heights, water) => {
       const sizes = {thickness, gap, width, stress};
@@ -225,8 +233,11 @@ function ofBridge({thickness, gap, width, stress, length, solids = POLYSILICON},
         const outside = !(low * UNITS[unit] <= sizes[name] && sizes[name] <= high * UNITS[unit]), symbol = unit.replace("u", "µ");
         if (outside) throw new NotLearnt(`the ${name} of a bridge must be from ${low} to ${high} ${symbol}`);
       }
-      const attraction = attractionOf(solids, water, ofWater);
-      return lengthsOfBridge({heights, film: water, thickness, gap, width, modulus, inContact: solids.modulus, attraction}, closed, bridges);
+      return lengthsOfBridge(stateOf(heights, water), closed, bridges);
+    },
+    closedOn: (pairs, found, water) => {
+      const factors = pairs.map((heights, k) => tension ? shorterBy(found[k], stateOf(heights, water), {energy: added, tension}, stoppers) : 1);
+      return stretchedBy(stress, thickness, modulus, Math.min(...factors));
     },
     inDryAir: () => { throw new NotLearnt("a bridge was not learnt in dry air"); },
     closed, errors: (part) => part.bridges, stated: length, row: ({length, intervals}) => ({size: length, intervals}),
@@ -337,10 +348,14 @@ function standing(beam, liquid) {
   }, scale ** 0.25);
 }
 function released(beam, liquid) {
-  const {clamps, modulus, thickness, gap} = beam;
-  if (clamps === 1) return (3 / 16 * modulus * thickness ** 3 * gap ** 2 / liquid) ** 0.25;
-  const pull = Math.sqrt(48 * liquid / (modulus * thickness ** 3)) / gap, decay = Math.sqrt(tensionAt(beam, 1));
-  return 2 * settledLength((crack) => Math.sqrt(endStiffness(decay * crack)[1] / pull), Math.sqrt(6 / pull));
+  const {clamps} = beam;
+  const crack = arrested(beam, 2 * liquid);
+  return clamps === 1 ? crack / Math.SQRT2 : 2 * crack;
+}
+function arrested(beam, energy) {
+  const {modulus, thickness, gap} = beam;
+  const pull = Math.sqrt(24 * energy / (modulus * thickness ** 3)) / gap, decay = Math.sqrt(tensionAt(beam, 1));
+  return settledLength((crack) => Math.sqrt(endStiffness(decay * crack)[1] / pull), Math.sqrt(6 / pull));
 }
 function byMode(number, tension) {
   let low = (2 * number - 1) * Math.PI, high = 2 * number * Math.PI;
@@ -360,10 +375,65 @@ function halfSineShock(beam, length) {
   const overshoot = clamps === 1 ? OF_CANTILEVER : sum(modes) / byUnit;
   return modulus * thickness ** 2 * gap / (12 * DENSITY * length ** 4 * byUnit) / (HALF_SINE * overshoot);
 }
-function lifeOf({stress, thickness, gap, width, length, liquid, solids = POLYSILICON}) {
-  const beam = {clamps: stress === undefined ? 1 : 2, stress, thickness, gap, width, modulus: solids.beamModulus};
+const beamOf = ({stress, thickness, gap, width, solids = POLYSILICON}) =>
+  ({clamps: stress === undefined ? 1 : 2, stress, thickness, gap, width, modulus: solids.beamModulus});
+function lifeOf(question) {
+  const beam = beamOf(question), {liquid, length} = question;
   const dried = liquid ? [standingEach, standing, released].map((of) => of(beam, liquid)) : null;
   return {dried, shock: halfSineShock(beam, length)};
+}
+
+// flats: surfaces in contact, with water in all gaps where it condenses
+const EDGE = 0.1e-6, WAVELENGTH = 100e-9, RANGE = 0.97 * 2 ** (1 / 6) * 2.09e-10, SHORTER = Math.log(0.98), SLOPES = 64;
+function workAcross(constant, gap) {
+  const near = AT_REST / (AT_REST + gap);
+  return workOf(constant) * 4 / 3 * (near ** 2 / (1 + 5.32 * gap / WAVELENGTH) - near ** 8 / 4);
+}
+function attractionsOf({throughWater, inDryAir}, film) {
+  const farthest = inDryAir / (6 * Math.PI * AT_REST ** 3) * 2 / Math.sqrt(27), work = workOf(film ? throughWater : inDryAir);
+  const beyond = film ? workAcross(inDryAir, film.height) - workAcross(throughWater, film.height) : 0;
+  const solids = {energy: work + beyond, most: work / RANGE + farthest};
+  return film ? [solids, {energy: film.energy, most: tensionOf(film)}] : [solids];
+}
+function onFlats(question, attractions) {
+  const [energy, most] = ["energy", "most"].map((name) => sum(attractions.map((each) => each[name])));
+  if (question.sides) return {size: most * question.sides[0] * question.sides[1]};
+  const beam = beamOf(question), crack = arrested(beam, energy);
+  return beam.clamps === 1 ? {size: crack, tip: atTip(beam, crack, attractions)} : {size: ofFlatMiddle(beam, crack, energy, most)};
+}
+function atTip({modulus, thickness, gap}, crack, attractions) {
+  const sharp = 1.5 * gap / crack * Math.SQRT2, bending = 2 / 27 * modulus * thickness ** 3 / gap ** 2;
+  const onEdge = ({energy, most}, slope) => {
+    const edge = Math.sqrt(2 * EDGE * energy * most);
+    return slope ** 2 * EDGE / 2 < energy / most ? energy / slope + most * slope * EDGE / 2 + edge : 2 * edge;
+  };
+  const excess = (slope) => Math.log(sum(attractions.map((each) => onEdge(each, slope))) / (bending * slope ** 3));
+  const ratio = 4 * Math.exp(excess(sharp) / 3), slopes = Array.from({length: SLOPES + 1}, (_, k) => sharp / 2 * ratio ** (k / SLOPES));
+  const held = slopes.findLastIndex((slope) => excess(slope) >= 0), [below, above] = [0, 1].map((k) => excess(slopes[held + k]));
+  return 1.5 * gap / (slopes[held] * (slopes[held + 1] / slopes[held]) ** (below / (below - above)));
+}
+function ofFlatMiddle(beam, crack, energy, most) {
+  const {modulus, thickness, gap, width} = beam, stiffness = modulus * width * thickness ** 3 / 12;
+  const excess = (logarithm) => {
+    const half = Math.exp(logarithm) / 2, [force, moment] = endStiffness(Math.sqrt(tensionAt(beam, half)));
+    const pull = 2 * force * stiffness * gap / half ** 3, part = pull / (2 * width * most);
+    return moment * gap / half ** 2 * part ** 2 / 2 - 7 / 48 * pull * part ** 3 / stiffness - energy / most;
+  };
+  for (let longer = Math.log(2 * crack); longer > Math.log(thickness); longer += SHORTER) {
+    if (excess(longer + SHORTER) <= 0) continue;
+    let low = longer + SHORTER, high = longer;
+    for (let k = 0; k < 60; k++) {
+      const middle = 0.5 * (low + high);
+      if (excess(middle) > 0) low = middle; else high = middle;
+    }
+    return Math.exp(low);
+  }
+  return 0;
+}
+function worstOnFlats(question, films) {
+  const bounds = films.map((film) => onFlats(question, attractionsOf(question.solids || POLYSILICON, film)));
+  const worst = question.sides ? Math.max : Math.min;
+  return {size: worst(...bounds.map(({size}) => size)), tip: Math.min(...bounds.map(({tip}) => tip)), isHumid: films.some(Boolean)};
 }
 
 // normal distribution: continued fraction and series of erfc
@@ -404,6 +474,7 @@ function withoutVoltage(length, drive) {
   return cube > 0 ? cube ** (-1 / 3) : Infinity;
 }
 const drivenBy = (drive) => ({length: (bare) => drive ? atVoltage(bare, drive) : bare, bare: (length) => withoutVoltage(length, drive)});
+const pulledBy = (added) => ({length: (bare) => bare / (1 + added * bare), bare: (length) => added * length < 1 ? length / (1 - added * length) : Infinity});
 
 // answer
 const FRACTIONS = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6], STUDENT = {90: 2.353363, 95: 3.182446};
@@ -417,26 +488,27 @@ function centre(one, score) {
 }
 function answer(question, table) {
   const kind = question.sides ? ofStopper : "stress" in question ? ofBridge : ofCantilever;
-  const {lengths, inDryAir, closed, errors, stated, row} = kind(question, table);
+  const {lengths, inDryAir, closed, closedOn, errors, stated, row} = kind(question, table), pairs = [question.stated, ...question.members];
   const solids = question.solids || POLYSILICON, {wetting} = solids, temperature = question.temperature || REFERENCE;
   const isOfPolysilicon = temperature === REFERENCE && Object.keys(POLYSILICON).every((key) => solids[key] === POLYSILICON[key]);
   const errorsOf = (part) => isOfPolysilicon || !part.margins_of_other_solids ? part : {...part, margins: part.margins_of_other_solids};
   const airs = question.humidities.map((air) => {
-    const isHumid = air > 0 && wetting > ROUNDING;
-    const of = isHumid ? (each) => lengths(each, film(air, temperature, wetting, table.water)) : inDryAir;
-    return {stated: of(question.stated), members: question.members.map(of), errors: errorsOf(errors(isHumid ? table : table.dry))};
+    const isHumid = air > 0 && wetting > ROUNDING, water = isHumid ? film(air, temperature, wetting, table.water) : null;
+    const found = pairs.map((each) => isHumid ? lengths(each, water) : inDryAir(each));
+    return {water, stated: found[0], members: found.slice(1), errors: errorsOf(errors(isHumid ? table : table.dry)), closed: closedOn ? closedOn(pairs, found, water) : closed};
   });
   const once = (p) => -Math.expm1(Math.log1p(-p) / question.touchdowns);
   const rows = FRACTIONS.map((fraction) => {
     const score = normalScore(once(fraction)), ends = {};
     for (const confidence of ["90", "95"]) {
-      const both = airs.map((one) => endsOf(one, score, confidence).map((end) => closed.length(Math.exp(end))));
+      const both = airs.map((one) => endsOf(one, score, confidence).map((end) => one.closed.length(Math.exp(end))));
       ends[confidence] = [0, 1].map((side) => Math.min(...both.map((each) => each[side])));
     }
-    const length = (one) => Math.exp(logarithmOf(one, score, question.averaged));
-    return {fraction, ...row({length: closed.length(Math.min(...airs.map(length))), intervals: ends})};
+    const length = (one) => one.closed.length(Math.exp(logarithmOf(one, score, question.averaged)));
+    return {fraction, ...row({length: Math.min(...airs.map(length)), intervals: ends})};
   });
-  return {rows, stuck: stated ? stuck(question, airs, closed.bare(stated)) : null, life: question.sides ? null : lifeOf(question)};
+  return {rows, stuck: stated ? stuck(question, airs, stated) : null, life: question.sides ? null : lifeOf(question),
+    flat: worstOnFlats(question, airs.map(({water}) => water))};
 }
 const logarithmOf = (one, score, averaged) => averaged ? centre(one, score)[0] : Math.log(lengthAt(one.stated, score));
 function endsOf(one, score, confidence) {
@@ -452,9 +524,9 @@ function scoreAt(logarithm, value) {
   return high;
 }
 const after = (score, touchdowns) => -Math.expm1(touchdowns * Math.log1p(-fractionOf(score)));
-function stuck(question, airs, bare) {
-  const value = Math.log(bare), found = airs.map((one) => {
-    const lines = [(score) => logarithmOf(one, score, question.averaged), ...[1, 0].map((k) => (score) => endsOf(one, score, "95")[k])];
+function stuck(question, airs, stated) {
+  const found = airs.map((one) => {
+    const value = Math.log(one.closed.bare(stated)), lines = [(score) => logarithmOf(one, score, question.averaged), ...[1, 0].map((k) => (score) => endsOf(one, score, "95")[k])];
     return lines.map((line) => after(scoreAt(line, value), question.touchdowns));
   });
   return [0, 1, 2].map((k) => Math.max(...found.map((each) => each[k])));

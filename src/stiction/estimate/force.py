@@ -9,19 +9,21 @@ ASSUME: forces are lognormal for the mean of the powers, with the scatter from t
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from stiction.config.units import to_si
 from stiction.estimate import dry
 from stiction.estimate.asked import Asked
+from stiction.estimate.closed import flats
+from stiction.estimate.closed.flats import FlatBound, FlatPull
 from stiction.estimate.closed.life import StopperLife
 from stiction.estimate.length import LengthRow, Lengths, NotLearnt, falling, known_at, of_solids
 from stiction.estimate.state import OF_PATCHES, Film, PatchState
 from stiction.estimate.statistics import Heights
 from stiction.estimate.table import Surrogate
-from stiction.estimate.voltage import Driven
+from stiction.estimate.voltage import Pulled
 
 
 @dataclass(frozen=True)
@@ -58,6 +60,22 @@ def _changed(summits, ratio, power):
     return Lengths(tuple(shift + power * (each - median) for each in summits.logarithms), power * summits.slope)
 
 
+def pull_off(patch: PatchState, learnt: Mapping[str, Any]) -> float:
+    """Median pull-off pressure of a patch, from the part of the table about stoppers [Pa].
+
+    Raises
+    ------
+    NotLearnt
+        If the patch is beyond what was learnt.
+    """
+    return math.exp(-_reciprocals_of(patch, learnt).logarithms[0]) / patch.area
+
+
+def _reciprocals_of(patch, learnt):
+    """Reciprocals of the forces of a patch."""
+    return reciprocals(patch, *(Surrogate(**learnt[name]) for name in ("forces", "full", "attraction")))
+
+
 @dataclass(frozen=True)
 class Stopper(Asked):
     """Question about one stopper."""
@@ -77,14 +95,18 @@ class Stopper(Asked):
         return None if self.force is None else 1 / self.force
 
     @property
-    def closed(self) -> Driven:
-        """Closed form of its voltage, which it has not."""
-        return Driven(0.0)
+    def closed(self) -> Pulled:
+        """Closed form of its forces at its voltage."""
+        return Pulled(self.added)
 
     @property
     def life(self) -> StopperLife:
         """Its life."""
         return StopperLife(self.surroundings)
+
+    def on_flats(self, attracted: Sequence[FlatPull]) -> FlatBound:
+        """Force that flat surfaces hold by their attractions."""
+        return flats.of_stopper(math.prod(self.sides), attracted)
 
     def errors(self, table: Mapping[str, Any]) -> Mapping[str, Any]:
         """Part of the table with the errors of its forces."""
@@ -94,7 +116,7 @@ class Stopper(Asked):
         """Reciprocals of its pull-off forces on the sum of two surfaces [1/N]."""
         learnt, attraction = table["stoppers"], self.solids.attraction(water.energy)
         patch = PatchState(heights, water, self._area(learnt), self.solids.modulus, attraction)
-        return reciprocals(patch, *(Surrogate(**learnt[name]) for name in ("forces", "full", "attraction")))
+        return _reciprocals_of(patch, learnt)
 
     def in_dry_air(self, heights: Heights, table: Mapping[str, Any]) -> Lengths:
         """Reciprocals of its pull-off forces in dry air [1/N]."""

@@ -1,5 +1,5 @@
 // Sliders, table and file of the page. The arithmetic is in estimate.js.
-const TABLE = JSON.parse(document.getElementById("content").textContent);
+const [TABLE, PROMISES] = ["content", "promises"].map((id) => JSON.parse(document.getElementById(id).textContent));
 const CANTILEVER = "cantilever", BRIDGE = "bridge", STOPPER = "stopper";
 const INPUTS = [
   ["kind", "Device", [CANTILEVER, BRIDGE, STOPPER], CANTILEVER],
@@ -37,7 +37,7 @@ const OF_MATERIAL = [
   ["dry_zJ", "Hamaker constant through dry air [zJ]", 60, 480, 0.5, 186.5],
 ];
 const OWN = {[CANTILEVER]: ["thickness_um", "gap_um", "width_um", "length_um", "voltage_V", "dielectric_nm", "tension_mN_per_m"],
-  [BRIDGE]: ["thickness_um", "below_um", "width_um", "length_um", "stress_MPa", "tension_mN_per_m"], [STOPPER]: ["side_um", "other_um", "force_uN"]};
+  [BRIDGE]: ["thickness_um", "below_um", "width_um", "length_um", "stress_MPa", "voltage_V", "dielectric_nm", "tension_mN_per_m"], [STOPPER]: ["side_um", "other_um", "force_uN", "voltage_V", "dielectric_nm"]};
 const DRY = "dry", DRIEST = 0.345, airOf = (value) => value("humidity") < DRIEST ? DRY : value("humidity");
 const PAIR = ["known_skewness", "known_kurtosis"]; // a file states both or neither
 const OPEN = OF_SURFACE.map(([key]) => key), byId = (id) => document.getElementById(id);
@@ -66,11 +66,14 @@ function questionOf({own, kind, like, substrate, value, open}) {
   const asked = {stated: of(like), members: open ? Object.keys(TABLE.library).map(of) : [], averaged: false,
     humidities: [airOf(value) === DRY ? 0 : airOf(value)], touchdowns: value("touchdowns")};
   Object.assign(asked, {solids: solidsOf(value), temperature: value("temperature_K")});
-  if (kind === STOPPER) return {...asked, sides: ["side_um", "other_um"].map((key) => value(key) * 1e-6), force: value("force_uN") * 1e-6};
+  const potential = value("voltage_V"), distance = value("dielectric_nm") * 1e-9, tension = PERMITTIVITY * (potential / distance) ** 2 / 2;
+  if (kind === STOPPER) {
+    const sides = ["side_um", "other_um"].map((key) => value(key) * 1e-6);
+    return {...asked, sides, force: value("force_uN") * 1e-6, added: tension * sides[0] * sides[1]};
+  }
   const beam = {...asked, thickness: value("thickness_um") * 1e-6, width: value("width_um") * 1e-6, length: value("length_um") * 1e-6, liquid: value("tension_mN_per_m") * 1e-3};
-  if (kind === BRIDGE) return {...beam, gap: value("below_um") * 1e-6, stress: value("stress_MPa") * 1e6};
-  const gap = value("gap_um") * 1e-6, energy = energyOf(value("voltage_V"), value("dielectric_nm") * 1e-9, gap);
-  return {...beam, added: energy, gap};
+  const gap = value(kind === BRIDGE ? "below_um" : "gap_um") * 1e-6, driven = {...beam, added: energyOf(potential, distance, gap), gap};
+  return kind === BRIDGE ? {...driven, tension, stress: value("stress_MPa") * 1e6} : driven;
 }
 function solidsOf(value) {
   const modulus = value("modulus_GPa") * 1e9, cosine = (key) => Math.cos(value(key) * Math.PI / 180);
@@ -114,6 +117,7 @@ function write(found, {kind, value}) {
   const [least, most] = outward(found.rows[2].intervals["90"]);
   const safe = isForce ? `at least ${most}` : mustDry ? `at most ${bound(dried[0] * 1e6)}, or it can collapse while ${LIQUID} dries` : `at most ${least}`;
   byId("said").textContent = `1 in 1000 sticks between ${least} and ${most} ${symbol} (90 %): use ${safe}.`;
+  byId("promise").textContent = PROMISES[Number(isForce)];
   byId("before").textContent = leftOut(kind, value);
   const limit = isForce ? found.rows[2].intervals["90"][1] : mustDry ? dried[0] : lowest, size = value(key) * 1e-6;
   const isUnsafe = isForce ? size < limit : size > limit, stated = `${value(key)} ${symbol}`;
@@ -121,12 +125,20 @@ function write(found, {kind, value}) {
   const [middle, low, high] = found.stuck.map((part) => percent(part, value("touchdowns")));
   byId("stuck").textContent = isUnsafe ? `Best estimate: ${middle} stick${high === middle ? "" : `, but up to ${high} (95 %)`}.`
     : `At ${stated}, ${middle} stick (95 %: ${low} to ${high}).`;
+  byId("flat").textContent = flatOf(found.flat, symbol, kind, value);
   byId("life").textContent = found.life ? livesOf(found.life, value(key), kind).join("\n") : "";
 }
 function leftOut(kind, value) {
   const parts = [[kind !== STOPPER && !value("tension_mN_per_m"), "drying"], [airOf(value) !== DRY, "fast separation"]];
   const words = parts.filter(([isLeftOut]) => isLeftOut).map(([, word]) => word).join(" and ");
   return `For exact inputs${words && `, before ${words}`}.`;
+}
+function flatOf({size, tip, isHumid}, symbol, kind, value) {
+  const start = `${value("voltage_V") ? "Without its voltage, flat" : "Flat"}${isHumid ? ", flooded" : ""} surfaces`;
+  const most = `${grouped(bound(size * 1e6, kind === STOPPER))} ${symbol}`;
+  if (kind === STOPPER) return `${start} hold ${most}. No surface of this area holds more.`;
+  if (kind === BRIDGE) return `${start} stick from ${most} on. No surface sticks at a shorter length.`;
+  return `${start} stick from ${bound(tip * 1e6)} ${symbol} on at the tip and from ${most} on along the underside. Rough ones can stick harder, but at the tip alone.`;
 }
 const LIQUID = "liquid", GRAVITY = 9.80665, FATES = ["stands", "may collapse", "collapses"];
 function bound(number, up = false) { // to three digits, not beyond it, of nine that do not show how it was computed
@@ -145,7 +157,7 @@ function refuse(reason) {
   byId("said").className = "said refused";
   byId("said").textContent = `Not known at once: ${reason.message}. A run computes it.`;
   byId("table").innerHTML = "<caption>No number</caption>";
-  for (const id of ["unsafe", "before", "stuck", "life"]) byId(id).textContent = "";
+  for (const id of ["unsafe", "before", "promise", "stuck", "flat", "life"]) byId(id).textContent = "";
 }
 function liquidsOf(kind, value) {
   const tension = value("tension_mN_per_m");
@@ -169,15 +181,14 @@ function materialOf(value) {
 const waterOf = (value) => value("temperature_K") === REFERENCE ? "" : `water: {temperature_K: ${value("temperature_K")}}\n`;
 const NAMES = {[CANTILEVER]: "Lever", [BRIDGE]: "Bridge", [STOPPER]: "Bump"};
 const SIZES = {
-  [CANTILEVER]: ofLever,
-  [BRIDGE]: (value) => `${ofBeam(value, "below_um")}, residual_stress_MPa: ${value("stress_MPa")}`,
-  [STOPPER]: (value) => `contact_um: [${value("side_um")}, ${value("other_um")}], restoring_force_uN: ${value("force_uN")}`,
+  [CANTILEVER]: (value) => atVoltageOf(ofBeam(value, "gap_um"), value),
+  [BRIDGE]: (value) => atVoltageOf(`${ofBeam(value, "below_um")}, residual_stress_MPa: ${value("stress_MPa")}`, value),
+  [STOPPER]: (value) => atVoltageOf(`contact_um: [${value("side_um")}, ${value("other_um")}], restoring_force_uN: ${value("force_uN")}`, value),
 };
 function ofBeam(value, gap) {
   return ["length_um", "thickness_um", "width_um"].map((key) => `${key}: ${value(key)}`).join(", ") + `, gap_um: ${value(gap)}`;
 }
-function ofLever(value) {
-  const sizes = ofBeam(value, "gap_um");
+function atVoltageOf(sizes, value) {
   const dielectric = `dielectric: {thickness_nm: ${value("dielectric_nm")}, permittivity: 1}`;
   return value("voltage_V") ? `${sizes}, voltage_V: ${value("voltage_V")}, ${dielectric}` : sizes;
 }

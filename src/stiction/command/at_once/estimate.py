@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from typing import Any, NamedTuple
 
-from stiction.command.at_once import life
+from stiction.command.at_once import flats, life
 from stiction.command.output_streams import say
 from stiction.config.units import from_si
 from stiction.contact.air import DRY, DRY_AIR, Air
@@ -187,10 +187,9 @@ class _Kind(NamedTuple):
 
 #: Kinds of devices that options state.
 _CANTILEVER = _Kind("cantilever", of_numbers, ("thickness", "gap"), {"force": "stoppers"})
-_OF_CANTILEVERS = dict.fromkeys(("voltage", "dielectric"), "cantilevers")
-_BRIDGE = _Kind("bridge", of_middle, ("thickness", "gap"), _CANTILEVER.strange | _OF_CANTILEVERS)
+_BRIDGE = _Kind("bridge", of_middle, ("thickness", "gap"), _CANTILEVER.strange)
 _OF_BEAMS = dict.fromkeys(("thickness", "gap", "length"), "beams") | {"stress": "bridges"}
-_STOPPER = _Kind("stopper", of_area, ("contact",), _OF_BEAMS | _OF_CANTILEVERS)
+_STOPPER = _Kind("stopper", of_area, ("contact",), _OF_BEAMS)
 
 
 def _kind_of(arguments):
@@ -289,6 +288,9 @@ def shown(estimate: Estimate) -> Iterator[str]:
     if estimate.stuck is not None:
         yield f"  {_at_its_size(estimate, symbol)}"
     yield f"  {chosen(estimate)}."
+    if estimate.promise:
+        yield f"  {estimate.promise}"
+    yield f"  {flats.sentences(estimate, symbol)}"
     yield from (f"  {sentence}" for sentence in life.sentences(estimate, symbol))
 
 
