@@ -4,6 +4,7 @@ import pytest
 
 from stiction.command.at_once import estimate
 from stiction.command.main import main
+from stiction.estimate.promise import promise
 
 FILE = """
 run: {pairs: [b], studies: []}
@@ -14,14 +15,18 @@ devices:
 NO_LIQUIDS = FILE.replace(FILE.splitlines()[2], "")
 SPRING = "S1: {kind: stopper, pair: b, contact_um: [3, 3], restoring_force_uN: 20, mass_ng: 50, humidities: [0.67]}"
 WITHOUT = FILE.partition("  C1")[0]
+#: Beginnings of sentences on flat surfaces: `tests/estimate/test_flats_at_once.py`.
+FLAT = "Flat", "Without its voltage, flat"
+#: Promises about the size to use.
+OF_LENGTHS, OF_FORCES = (promise("90", is_force) for is_force in (False, True))
 
 
 def printed(tmp_path, capsys, text):
-    """Sentences after the table, without the last one."""
+    """Sentences after the table, without that on flat surfaces and the last one."""
     (tmp_path / "mine.yaml").write_text(text)
     assert estimate.main([str(tmp_path / "mine.yaml")]) == 0
     *lines, _ = capsys.readouterr().out.splitlines()
-    return [line.strip() for line in lines[8:]]
+    return [line.strip() for line in lines[8:] if not line.strip().startswith(FLAT)]
 
 
 def with_keys(keys, text=FILE):
@@ -34,6 +39,7 @@ def test_drying_decides_the_length_to_use_and_has_a_sentence_for_each_liquid(tmp
     assert first.startswith("1 in 1000 sticks between 228 and ")
     assert first.endswith(" µm (90 %): use at most 199, or it can collapse while water dries.")
     assert lines == [
+        OF_LENGTHS,
         "While water dries, beams stand up to 199 µm and collapse beyond 246 µm; "
         "after a collapse they stay down if they are longer than 234 µm.",
         "While Hexane dries, beams stand up to 282 µm and collapse beyond 348 µm; "
@@ -42,6 +48,7 @@ def test_drying_decides_the_length_to_use_and_has_a_sentence_for_each_liquid(tmp
     ]
     assert printed(tmp_path, capsys, NO_LIQUIDS) == [
         first.partition(": use")[0] + ": use at most 228.",
+        OF_LENGTHS,
         "At 228 µm it does not touch below a half-sine shock of 131 000 g.",
     ]
 
@@ -64,7 +71,7 @@ def test_a_stated_length_has_its_fate(tmp_path, capsys, length, fate):
 def test_a_liquid_that_does_not_wet_has_no_length(tmp_path, capsys):
     text = FILE.replace("surface_tension_mN_per_m: 72", "surface_tension_mN_per_m: 72, contact_angle_deg: 100")
     lines = printed(tmp_path, capsys, text)
-    assert lines[1] == "Beams of any length stand while water dries."
+    assert lines[2] == "Beams of any length stand while water dries."
     assert "use at most 228." in lines[0]
 
 
@@ -79,6 +86,8 @@ def test_a_shock_does_not_bring_it_down_or_does_and_a_run_says_what_to_use(tmp_p
         )
     dry = with_keys("shock_g: 3000", NO_LIQUIDS).replace("[0.67]", "[dry]")
     assert ": use at most " in printed(tmp_path, capsys, dry)[0]
+    assert OF_LENGTHS not in lines, "a run says what to use"
+    assert OF_LENGTHS in printed(tmp_path, capsys, dry), "control"
 
 
 def test_a_bridge_may_be_brought_down_and_never_is_for_certain(tmp_path, capsys):
@@ -105,9 +114,10 @@ def test_a_voltage_below_which_it_does_not_touch_and_its_own_one(tmp_path, capsy
 
 
 def test_a_stopper_has_a_shock_by_its_mass_and_a_voltage_by_its_electrode(tmp_path, capsys):
-    assert printed(tmp_path, capsys, f"{WITHOUT}  {SPRING}\n")[-1] == (
-        "At 20 µN it does not touch below a half-sine shock of 23 000 g."
-    )
+    assert printed(tmp_path, capsys, f"{WITHOUT}  {SPRING}\n")[-2:] == [
+        OF_FORCES,
+        "At 20 µN it does not touch below a half-sine shock of 23 000 g.",
+    ]
     electrode = "stiffness_N_per_m: 75, gap_um: 1, electrode: {area_um2: 10000, gap_um: 2}"
     pulled = SPRING.replace("restoring_force_uN: 20, mass_ng: 50", electrode)
     assert printed(tmp_path, capsys, f"{WITHOUT}  {pulled}\n")[-1] == "At 75 µN it does not touch below 40.4 V."

@@ -11,9 +11,10 @@ from stiction.analysis.model_error import few_tip_ratios
 from stiction.config.units import to_si
 from stiction.estimate.learning import errors as of_estimates
 from stiction.estimate.learning.design import FILMS
-from stiction.estimate.learning.errors import coverage, rest_of, scores
+from stiction.estimate.learning.errors import conformal, coverage, rest_of, scores
 from stiction.estimate.learning.training import FACTORS, SETS, TrainingTips, base, changes_of, plan_of
 from stiction.estimate.length import most
+from stiction.estimate.promise import kept
 from stiction.estimate.table import content, known
 from stiction.progress import without_progress
 from stiction.stages.contact.pair_model_error import POWER_ERROR
@@ -102,7 +103,21 @@ def test_the_rest_of_the_difficulty_is_that_of_normal_errors_of_any_size(rest):
     refused = of_estimates.Tested(-1, math.nan, 1.0, math.nan)
     assert rest_of([*of_errors(slopes, errors), refused]) == pytest.approx(rest, rel=0.15)
     assert rest_of(of_errors(slopes, 3 * errors)) == pytest.approx(rest, rel=0.15)
-    assert scores(of_errors(slopes, errors), rest).std() == pytest.approx(0.7 * math.sqrt(1 - 2 / math.pi), rel=0.05)
+    assert scores(of_errors(slopes, errors), rest).std() == pytest.approx(0.7, rel=0.05)
+    assert np.all(np.sign(scores(of_errors(slopes, errors), rest)) == np.sign(errors))
+
+
+@pytest.mark.parametrize(("law", "is_kept"), [("normal", True), ("laplace", True), ("exponential", False)])
+def test_an_end_of_a_conformal_interval_keeps_its_promise_unless_all_errors_are_on_one_side(law, is_kept):
+    rng = np.random.default_rng(6)
+
+    def drawn(number):
+        """Errors over their difficulties, negative on the unsafe side."""
+        return -getattr(rng, law)(size=number)
+
+    beyond = [np.mean(drawn(400) < -conformal(drawn(50), 0.9)) for _ in range(400)]
+    allowed, error = 1 - kept("90") / 100, np.std(beyond) / math.sqrt(len(beyond))
+    assert (np.mean(beyond) < allowed + 4 * error) == is_kept
 
 
 @pytest.mark.parametrize(("inside", "number"), [(9, 10), (47, 50), (1, 30)])

@@ -325,6 +325,16 @@ def test_what_frees_a_bridge_lets_it_be_longer(keys):
     assert found(**keys).chosen.length > 1.02 * found().chosen.length
 
 
+@pytest.mark.parametrize(("stress", "least", "most"), [(0.0, 1.0, 1.0), (50.0, 1.1, 1.5), (200.0, 1.5, 2.4)])
+def test_stress_multiplies_both_ends_of_an_interval_as_the_length(stress, least, most):
+    row, under = found(residual_stress_MPa=stress).chosen, stretched(stress * 1e6)
+    sizes = row.intervals["90"][0], row.length, row.intervals["90"][1]
+    below, above = np.diff(np.log([under.bare(size) for size in sizes]))
+    assert below == pytest.approx(above, rel=1e-6)
+    amplified = np.diff(np.log(sizes)) / below
+    assert np.all((amplified > least - 1e-6) & (amplified < most + 1e-6))
+
+
 def test_the_driest_of_two_airs_does_not_decide():
     both, wetter = found(humidities=[0.5, 0.85]), found(humidities=[0.85])
     assert both.chosen == wetter.chosen

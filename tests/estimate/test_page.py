@@ -119,7 +119,8 @@ def in_python(question, table):
     except NotLearnt as reason:
         return str(reason)
     rows = [[row.size, *(end for name in CONFIDENCES for end in row.intervals[name])] for row in found.rows]
-    return [*np.ravel(rows), *found.stuck, *life_of(found)]
+    flat = [found.flat.size, *([] if found.flat.at_tip is None else [found.flat.at_tip])]
+    return [*np.ravel(rows), *found.stuck, *life_of(found), *flat]
 
 
 def life_of(found):
@@ -138,7 +139,8 @@ def in_javascript(answers):
                 [row["size"], *(end for name in CONFIDENCES for end in row["intervals"][name])] for row in found["rows"]
             ]
             life = [*(found["life"]["dried"] or []), found["life"]["shock"]] if found["life"] else []
-            yield [*np.ravel(rows), *found["stuck"], *life]
+            flat = [found["flat"][name] for name in ("size", "tip") if found["flat"].get(name) is not None]
+            yield [*np.ravel(rows), *found["stuck"], *life, *flat]
 
 
 @pytest.mark.skipif(NODE is None, reason="node is not on this machine")

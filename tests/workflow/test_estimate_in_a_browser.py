@@ -96,9 +96,10 @@ def test_the_command_says_of_the_file_of_the_page_what_the_page_says(
     for (const box of document.querySelectorAll('input[type=checkbox]')) box.checked = false;
     for (const key of {known}) document.getElementById('known_' + key).click();
     document.getElementById('form').dispatchEvent(new Event('input', {{bubbles: true}}));
-    return ['said', 'unsafe', 'stuck', 'life', 'yaml'].map((id) => document.getElementById(id).textContent);
+    const said = ['said', 'promise', 'flat', 'unsafe', 'stuck', 'life', 'yaml'];
+    return said.map((id) => document.getElementById(id).textContent);
     """
-    said, unsafe, stuck, life, text = opened.run(moved)
+    said, promise, flat, unsafe, stuck, life, text = opened.run(moved)
     stuck = f"{unsafe} {stuck}".strip()
     assert f"humidities: [{air}]" in text
     assert ("liquids" in text) == (tension > 0 and kind != "stopper")
@@ -109,6 +110,8 @@ def test_the_command_says_of_the_file_of_the_page_what_the_page_says(
     assert estimate.main([str(tmp_path / "mine.yaml")]) == 0
     lines = [line.strip() for line in capsys.readouterr().out.splitlines()]
     assert said in lines
+    assert promise in lines
+    assert flat.replace("\N{NO-BREAK SPACE}", " ") in lines
     assert stuck in lines
     life = life.replace("\N{NO-BREAK SPACE}", " ").splitlines()
     assert life == [line for line in lines if line.startswith("While ") or " it " in line and line not in (said, stuck)]

@@ -15,9 +15,11 @@ from functools import cached_property
 from typing import Any
 
 from stiction.estimate.bridge import Bridge, Stretched
+from stiction.estimate.closed.flats import FlatBound, worst
 from stiction.estimate.closed.life import BeamLife, Dried, StopperLife, Touching
 from stiction.estimate.force import ForceRow, Stopper
 from stiction.estimate.length import Impossible, LengthRow, Lengths, NotLearnt, after, normal_score, score_at
+from stiction.estimate.promise import promise
 from stiction.estimate.question import Question
 from stiction.estimate.state import THINNEST, film
 from stiction.estimate.table import Surrogate
@@ -82,6 +84,11 @@ class Estimate:
         return math.nan if self.is_fast else self.use_if_slow
 
     @property
+    def promise(self) -> str | None:
+        """Sentence on what the size to use promises, none where a run alone knows this size."""
+        return None if self.is_fast else promise(CONFIDENCES[0], self.is_force)
+
+    @property
     def is_unsafe(self) -> bool:
         """Whether its stated size is beyond that to use even if it separates slowly."""
         size = self.question.size
@@ -91,6 +98,15 @@ class Estimate:
     def is_fast(self) -> bool:
         """Whether a shock can separate it faster than its water evaporates, which the estimate does not know."""
         return self.question.surroundings.shock > 0 and not all(map(self.question.is_dry, self.question.humidities))
+
+    @cached_property
+    def flat(self) -> FlatBound:
+        """What flat surfaces in contact hold in the worst of its airs, without its voltage, as column *bound* of a run.
+
+        No surface holds a shorter beam, or a larger force of a stopper. Its tip is another matter: see its field.
+        """
+        asked = self.question
+        return worst([asked.on_flats(asked.attractions(air)) for air in asked.humidities], self.is_force)
 
     @cached_property
     def touching(self) -> Touching:

@@ -1,14 +1,17 @@
 """What all questions to the estimate have in common. Plain Python, SI units."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
 from stiction.constants import REFERENCE_TEMPERATURE
 from stiction.contact.air import is_humid
+from stiction.estimate.closed import flats
+from stiction.estimate.closed.flats import FlatBound, FlatPull
 from stiction.estimate.closed.life import Surroundings
 from stiction.estimate.length import Lengths, most_after
 from stiction.estimate.solids import SolidPair
+from stiction.estimate.state import film
 from stiction.estimate.statistics import Heights
 
 
@@ -27,6 +30,7 @@ class Asked:
     solids: SolidPair = field(default=SolidPair(), kw_only=True)
     surroundings: Surroundings = field(default=Surroundings(), kw_only=True)
     temperature: float = field(default=REFERENCE_TEMPERATURE, kw_only=True)  #: of the water [K]
+    added: float = field(default=0.0, kw_only=True)  #: that a voltage adds: energy [J m⁻²], of a stopper force [N]
     unit: ClassVar[str] = "um"  #: of its size, a length
 
     @property
@@ -38,6 +42,11 @@ class Asked:
     def stated(self) -> float | None:
         """Its size as a length."""
         return self.size
+
+    @property
+    def is_driven(self) -> bool:
+        """Whether a voltage holds it as well."""
+        return self.added > 0
 
     @property
     def closed(self) -> Any:
@@ -61,3 +70,12 @@ class Asked:
     def is_dry(self, air: float) -> bool:
         """Whether no water condenses between its surfaces at a humidity [-]."""
         return not (is_humid(air) and self.solids.is_wetted)
+
+    def attractions(self, air: float) -> tuple[FlatPull, ...]:
+        """Attractions of flat surfaces in contact at a humidity [-]."""
+        water = None if self.is_dry(air) else film(air, self.temperature, self.solids.wetting)
+        return flats.attractions(water, self.solids)
+
+    def on_flats(self, attracted: Sequence[FlatPull]) -> FlatBound:
+        """Size that flat surfaces hold by their attractions."""
+        raise NotImplementedError

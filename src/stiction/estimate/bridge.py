@@ -22,21 +22,24 @@ ASSUME: f is the median of patches as large as the middle, known from stoppers, 
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 from stiction.config.units import to_si
 from stiction.estimate import dry, dry_bridge
 from stiction.estimate.asked import Asked
+from stiction.estimate.closed import flats
 from stiction.estimate.closed.beams import SlenderBeam
 from stiction.estimate.closed.bending import end_stiffness
+from stiction.estimate.closed.flats import FlatBound, FlatPull
 from stiction.estimate.closed.life import BeamLife
 from stiction.estimate.force import pull_off
-from stiction.estimate.length import LengthRow, Lengths, NotLearnt, falling, known_at, of_solids
+from stiction.estimate.length import LengthRow, Lengths, NotLearnt, falling, known_at, on_solids
+from stiction.estimate.solids import OF_POLYSILICON, BesideWater
 from stiction.estimate.state import OF_PATCHES, Film, PatchState, film, held_by
 from stiction.estimate.statistics import Heights
-from stiction.estimate.table import Surrogate
+from stiction.estimate.table import Surrogate, processes
 
 #: Names of the coordinates.
 COORDINATES = (
@@ -94,8 +97,13 @@ class MiddleState:
     stress: float  #: [Pa]
     modulus: float  #: E of the bridge [Pa]
     modulus_in_contact: float  #: E of the solids [Pa]
-    attraction: float = 1.0  #: r of `stiction.estimate.solids` [-]
+    beside_water: BesideWater = OF_POLYSILICON
     names: ClassVar[tuple[str, ...]] = COORDINATES
+
+    @property
+    def as_polysilicon(self) -> "MiddleState":
+        """State itself. ASSUME: of bridges, the stiffness of the solids acts by the coordinates alone."""
+        return self
 
     @property
     def held(self) -> float:
@@ -117,7 +125,7 @@ class MiddleState:
     def patch(self) -> PatchState:
         """Middle in contact."""
         area = self.width * self._width_in_contact
-        return PatchState(self.heights, self.film, area, self.modulus_in_contact, self.attraction)
+        return PatchState(self.heights, self.film, area, self.modulus_in_contact, self.beside_water)
 
     @property
     def coordinates(self) -> tuple[float, ...]:
@@ -151,7 +159,7 @@ def known_patch(patch: PatchState, learnt: Mapping[str, Any]) -> PatchState:
     return replace(patch, area=min(max(patch.area, low), high))
 
 
-def lengths(state: MiddleState, middle: Surrogate, full: Surrogate, attraction: Surrogate | None = None) -> Lengths:
+def lengths(state: MiddleState, middle: Surrogate, full: Surrogate, *changes: Surrogate) -> Lengths:
     """Lengths without stress that are held as well as those under it [m].
 
     Raises
@@ -159,8 +167,8 @@ def lengths(state: MiddleState, middle: Surrogate, full: Surrogate, attraction: 
     NotLearnt
         If the state is beyond what was learnt.
     """
-    change, values = (known_at(process, state.coordinates, COORDINATES) for process in (full, middle))
-    summits = falling(of_solids(values, state, attraction), math.log(state.flooded_length))
+    change = known_at(full, state.coordinates, COORDINATES)
+    summits = falling(on_solids(middle, state, *changes), math.log(state.flooded_length))
     return changed(summits, change["shift"], change["power"])
 
 
@@ -181,8 +189,7 @@ class Bridge(Asked):
     width: float  #: [m]
     stress: float  #: [Pa]
     length: float | None = None  #: [m]
-    added: float = 0.0  #: energy that a voltage adds [J m⁻²]
-    tension: float = 0.0  #: that it adds [Pa]
+    tension: float = 0.0  #: that a voltage adds [Pa]
 
     @property
     def size(self) -> float | None:
@@ -224,6 +231,10 @@ class Bridge(Asked):
         sizes = self.thickness, self.gap, self.width, self.solids.beam_modulus
         return BeamLife(SlenderBeam(2, *sizes, self.stress), self.surroundings)
 
+    def on_flats(self, attracted: Sequence[FlatPull]) -> FlatBound:
+        """Length that flat surfaces hold by their attractions."""
+        return flats.of_bridge(self.life.beam, attracted)
+
     def errors(self, table: Mapping[str, Any]) -> Mapping[str, Any]:
         """Part of the table with the errors of its lengths."""
         return table["bridges"]
@@ -231,14 +242,13 @@ class Bridge(Asked):
     def lengths(self, heights: Heights, water: Film, table: Mapping[str, Any], *_tips: Surrogate | None) -> Lengths:
         """Lengths without stress that are held as well as those that its middle holds, on the sum of two surfaces."""
         self._refuse(table["bridges"]["ranges"])
-        learnt = (Surrogate(**table["bridges"][name]) for name in ("middle", "full", "attraction"))
-        return lengths(self._state(heights, water), *learnt)
+        return lengths(self._state(heights, water), *processes(table["bridges"], "middle", "full"))
 
     def _state(self, heights, water):
         """State on the sum of two surfaces in a film."""
         sizes = self.thickness, self.gap, self.width, self.stress
-        solids, attraction = self.solids, self.solids.attraction(water.energy)
-        return MiddleState(heights, water, *sizes, solids.beam_modulus, solids.modulus, attraction)
+        solids, ratios = self.solids, self.solids.beside_water(water.energy)
+        return MiddleState(heights, water, *sizes, solids.beam_modulus, solids.modulus, ratios)
 
     def in_dry_air(self, heights: Heights, table: Mapping[str, Any]) -> Lengths:
         """Lengths of `lengths` in dry air."""

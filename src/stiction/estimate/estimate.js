@@ -43,12 +43,25 @@ function film(humidity, temperature, wetting, [tension, volume]) {
 
 // solids
 const POLYSILICON = {modulus: 164e9, beamModulus: 164e9, throughWater: 9.75e-20, inDryAir: 1.865e-19, wetting: 2}, ROUNDING = 1e-9;
-const attractionOf = (solids, {energy}, [tension]) => solids.throughWater / POLYSILICON.throughWater * (POLYSILICON.wetting * tension / energy);
-function ofSolids(values, state, place, {process, names}) {
-  const by = Math.log(state.attraction);
-  if (!by) return values;
-  const byOne = known(process, [...place, by], [...names, "attraction of the solids beside that of the water (from Hamaker constant and contact angles)"]);
-  return {...values, ...Object.fromEntries(["at_0", "at_1", "at_2"].map((name) => [name, values[name] + by * byOne[name]]))};
+const OF_WATER = 37e-21, following = (throughWater) => (Math.sqrt(throughWater) + Math.sqrt(OF_WATER)) ** 2;
+function besideWater({throughWater, inDryAir, modulus}, {energy}, [tension]) {
+  const own = POLYSILICON, byWater = own.wetting * tension / energy, water = throughWater / own.throughWater * byWater;
+  const air = inDryAir / own.inDryAir * byWater / (following(water * own.throughWater) / following(own.throughWater));
+  return [water, air, modulus / own.modulus * byWater];
+}
+const asPolysilicon = (state) => ({...state, modulus: state.modulus / state.besideWater[2]});
+const CHANGES = ["attraction", "attraction_through_air", "stiffness"], OF_SOLIDS = [
+  "attraction of the solids beside that of the water (from Hamaker constant and contact angles)",
+  "attraction of the solids through air beside that through water (from Hamaker constants and contact angles)",
+  "stiffness of the solids beside that of the water (from moduli and contact angles)"];
+function onSolids(process, ratios, place, part) {
+  const by = ratios.map(Math.log), changed = {...known(process, place, part.coordinates)};
+  CHANGES.forEach((name, k) => {
+    if (!by[k] || !part[name]) return;
+    const byOne = known(part[name], [...place, ...by], [...part.coordinates, ...OF_SOLIDS]);
+    for (const each of ["at_0", "at_1", "at_2"]) changed[each] += by[k] * byOne[each];
+  });
+  return changed;
 }
 const curvature = ({moments: [, second, fourth]}) => Math.sqrt(fourth / second);
 const tensionOf = ({height, energy}) => energy / height;
@@ -96,8 +109,7 @@ function falling(values, shift) {
   return {logarithms: [first, second, third], slope: Math.max(LEAST, values.slope)};
 }
 function onSummits(state, gap, table) {
-  const place = coordinates(state), names = table.coordinates, learnt = {process: table.attraction, names};
-  return falling(ofSolids(known(table.tips, place, names), state, place, learnt), Math.log(1.5 * gap / floodedSlope(state)));
+  return falling(onSolids(table.tips, state.besideWater, coordinates(asPolysilicon(state)), table), Math.log(1.5 * gap / floodedSlope(state)));
 }
 function lengthAt({logarithms: [first, second, third], slope}, score) {
   const [, b, c] = SCORES;
@@ -122,9 +134,9 @@ function lengths(state, gap, table) {
 }
 
 // force: its reciprocal stands for a length
-function reciprocals(patch, {forces, full, attraction, coordinates: names}) {
-  const place = ofPatch(patch), {ratio, power} = known(full, place, names);
-  const values = ofSolids(known(forces, place, names), patch, place, {process: attraction, names});
+function reciprocals(patch, stoppers) {
+  const {ratio, power} = known(stoppers.full, ofPatch(patch), stoppers.coordinates);
+  const values = onSolids(stoppers.forces, patch.besideWater, ofPatch(asPolysilicon(patch)), stoppers);
   return changedBy(falling(values, -Math.log(tensionOf(patch.film) * patch.area)), ratio, Math.max(1, power));
 }
 function changedBy({logarithms, slope}, ratio, power) {
@@ -175,7 +187,7 @@ function ofStopper({sides, force, added, solids = POLYSILICON}, {water: ofWater,
   };
   return {
     lengths: (heights, water) =>
-      reciprocals({heights, film: water, area: areaOf(stoppers), modulus, attraction: attractionOf(solids, water, ofWater)}, stoppers),
+      reciprocals({heights, film: water, area: areaOf(stoppers), modulus, besideWater: besideWater(solids, water, ofWater)}, stoppers),
     inDryAir: (heights) => dryReciprocals({heights, constant: solids.inDryAir, area: areaOf(dry.stoppers), modulus}, dry.stoppers),
     closed: pulledBy(added || 0), errors: (part) => part.stoppers, stated: force && 1 / force,
     row: ({length, intervals}) => ({size: 1 / length, intervals: Object.fromEntries(Object.entries(intervals).map(([key, [low, high]]) => [key, [1 / high, 1 / low]]))}),
@@ -211,9 +223,9 @@ function ofMiddle(state, {decay}) {
   const contact = contactOf(state);
   return [...ofPatch(middleOf(state)), Math.log(state.gap / state.film.height), decay * contact];
 }
-function lengthsOfBridge(state, closed, {middle, full, attraction, coordinates: names}) {
-  const place = ofMiddle(state, closed), {shift, power} = known(full, place, names);
-  const values = ofSolids(known(middle, place, names), state, place, {process: attraction, names});
+function lengthsOfBridge(state, closed, bridges) {
+  const place = ofMiddle(state, closed), {shift, power} = known(bridges.full, place, bridges.coordinates);
+  const values = onSolids(bridges.middle, state.besideWater, place, bridges);
   const {logarithms, slope} = falling(values, Math.log(floodedLength(state))), [median] = logarithms;
   return {logarithms: logarithms.map((each) => median + shift + power * (each - median)), slope: power * slope};
 }
@@ -234,7 +246,7 @@ function dryLengthsOfBridge({thickness, gap, width, modulus}, patch, pull, {midd
 }
 function ofBridge({thickness, gap, width, stress, length, added = 0, tension = 0, solids = POLYSILICON}, {water: ofWater, bridges, stoppers, dry}) {
   const modulus = solids.beamModulus, closed = stretchedBy(stress, thickness, modulus);
-  const stateOf = (heights, water) => ({heights, film: water, thickness, gap, width, modulus, inContact: solids.modulus, attraction: attractionOf(solids, water, ofWater)});
+  const stateOf = (heights, water) => ({heights, film: water, thickness, gap, width, modulus, inContact: solids.modulus, besideWater: besideWater(solids, water, ofWater)});
   const dryPatch = (heights) => ({heights, constant: solids.inDryAir, area: DRY_AREA, modulus: solids.modulus});
   const dryPull = (heights) => Math.exp(-dryReciprocals(dryPatch(heights), dry.stoppers).logarithms[0]) / DRY_AREA;
   const refuse = () => {
@@ -261,7 +273,7 @@ function ofBridge({thickness, gap, width, stress, length, added = 0, tension = 0
 function ofCantilever({thickness, gap, width, length, added, solids = POLYSILICON}, table) {
   const stiffness = solids.beamModulus * thickness ** 3 / gap ** 2, {modulus} = solids;
   return {
-    lengths: (heights, water) => lengths({heights, film: water, stiffness, width, modulus, attraction: attractionOf(solids, water, table.water)}, gap, table),
+    lengths: (heights, water) => lengths({heights, film: water, stiffness, width, modulus, besideWater: besideWater(solids, water, table.water)}, gap, table),
     inDryAir: (heights) => dryLengths({heights, constant: solids.inDryAir, stiffness, width, modulus}, gap, table.dry),
     closed: drivenBy(8 * (added || 0) / (3 * stiffness * gap ** 4)), errors: (part) => part, stated: length,
     row: ({length, intervals}) => {
@@ -363,10 +375,14 @@ function standing(beam, liquid) {
   }, scale ** 0.25);
 }
 function released(beam, liquid) {
-  const {clamps, modulus, thickness, gap} = beam;
-  if (clamps === 1) return (3 / 16 * modulus * thickness ** 3 * gap ** 2 / liquid) ** 0.25;
-  const pull = Math.sqrt(48 * liquid / (modulus * thickness ** 3)) / gap, decay = Math.sqrt(tensionAt(beam, 1));
-  return 2 * settledLength((crack) => Math.sqrt(endStiffness(decay * crack)[1] / pull), Math.sqrt(6 / pull));
+  const {clamps} = beam;
+  const crack = arrested(beam, 2 * liquid);
+  return clamps === 1 ? crack / Math.SQRT2 : 2 * crack;
+}
+function arrested(beam, energy) {
+  const {modulus, thickness, gap} = beam;
+  const pull = Math.sqrt(24 * energy / (modulus * thickness ** 3)) / gap, decay = Math.sqrt(tensionAt(beam, 1));
+  return settledLength((crack) => Math.sqrt(endStiffness(decay * crack)[1] / pull), Math.sqrt(6 / pull));
 }
 function byMode(number, tension) {
   let low = (2 * number - 1) * Math.PI, high = 2 * number * Math.PI;
@@ -386,10 +402,65 @@ function halfSineShock(beam, length) {
   const overshoot = clamps === 1 ? OF_CANTILEVER : sum(modes) / byUnit;
   return modulus * thickness ** 2 * gap / (12 * DENSITY * length ** 4 * byUnit) / (HALF_SINE * overshoot);
 }
-function lifeOf({stress, thickness, gap, width, length, liquid, solids = POLYSILICON}) {
-  const beam = {clamps: stress === undefined ? 1 : 2, stress, thickness, gap, width, modulus: solids.beamModulus};
+const beamOf = ({stress, thickness, gap, width, solids = POLYSILICON}) =>
+  ({clamps: stress === undefined ? 1 : 2, stress, thickness, gap, width, modulus: solids.beamModulus});
+function lifeOf(question) {
+  const beam = beamOf(question), {liquid, length} = question;
   const dried = liquid ? [standingEach, standing, released].map((of) => of(beam, liquid)) : null;
   return {dried, shock: halfSineShock(beam, length)};
+}
+
+// flats: surfaces in contact, with water in all gaps where it condenses
+const EDGE = 0.1e-6, WAVELENGTH = 100e-9, RANGE = 0.97 * 2 ** (1 / 6) * 2.09e-10, SHORTER = Math.log(0.98), SLOPES = 64;
+function workAcross(constant, gap) {
+  const near = AT_REST / (AT_REST + gap);
+  return workOf(constant) * 4 / 3 * (near ** 2 / (1 + 5.32 * gap / WAVELENGTH) - near ** 8 / 4);
+}
+function attractionsOf({throughWater, inDryAir}, film) {
+  const farthest = inDryAir / (6 * Math.PI * AT_REST ** 3) * 2 / Math.sqrt(27), work = workOf(film ? throughWater : inDryAir);
+  const beyond = film ? workAcross(inDryAir, film.height) - workAcross(throughWater, film.height) : 0;
+  const solids = {energy: work + beyond, most: work / RANGE + farthest};
+  return film ? [solids, {energy: film.energy, most: tensionOf(film)}] : [solids];
+}
+function onFlats(question, attractions) {
+  const [energy, most] = ["energy", "most"].map((name) => sum(attractions.map((each) => each[name])));
+  if (question.sides) return {size: most * question.sides[0] * question.sides[1]};
+  const beam = beamOf(question), crack = arrested(beam, energy);
+  return beam.clamps === 1 ? {size: crack, tip: atTip(beam, crack, attractions)} : {size: ofFlatMiddle(beam, crack, energy, most)};
+}
+function atTip({modulus, thickness, gap}, crack, attractions) {
+  const sharp = 1.5 * gap / crack * Math.SQRT2, bending = 2 / 27 * modulus * thickness ** 3 / gap ** 2;
+  const onEdge = ({energy, most}, slope) => {
+    const edge = Math.sqrt(2 * EDGE * energy * most);
+    return slope ** 2 * EDGE / 2 < energy / most ? energy / slope + most * slope * EDGE / 2 + edge : 2 * edge;
+  };
+  const excess = (slope) => Math.log(sum(attractions.map((each) => onEdge(each, slope))) / (bending * slope ** 3));
+  const ratio = 4 * Math.exp(excess(sharp) / 3), slopes = Array.from({length: SLOPES + 1}, (_, k) => sharp / 2 * ratio ** (k / SLOPES));
+  const held = slopes.findLastIndex((slope) => excess(slope) >= 0), [below, above] = [0, 1].map((k) => excess(slopes[held + k]));
+  return 1.5 * gap / (slopes[held] * (slopes[held + 1] / slopes[held]) ** (below / (below - above)));
+}
+function ofFlatMiddle(beam, crack, energy, most) {
+  const {modulus, thickness, gap, width} = beam, stiffness = modulus * width * thickness ** 3 / 12;
+  const excess = (logarithm) => {
+    const half = Math.exp(logarithm) / 2, [force, moment] = endStiffness(Math.sqrt(tensionAt(beam, half)));
+    const pull = 2 * force * stiffness * gap / half ** 3, part = pull / (2 * width * most);
+    return moment * gap / half ** 2 * part ** 2 / 2 - 7 / 48 * pull * part ** 3 / stiffness - energy / most;
+  };
+  for (let longer = Math.log(2 * crack); longer > Math.log(thickness); longer += SHORTER) {
+    if (excess(longer + SHORTER) <= 0) continue;
+    let low = longer + SHORTER, high = longer;
+    for (let k = 0; k < 60; k++) {
+      const middle = 0.5 * (low + high);
+      if (excess(middle) > 0) low = middle; else high = middle;
+    }
+    return Math.exp(low);
+  }
+  return 0;
+}
+function worstOnFlats(question, films) {
+  const bounds = films.map((film) => onFlats(question, attractionsOf(question.solids || POLYSILICON, film)));
+  const worst = question.sides ? Math.max : Math.min;
+  return {size: worst(...bounds.map(({size}) => size)), tip: Math.min(...bounds.map(({tip}) => tip)), isHumid: films.some(Boolean)};
 }
 
 // normal distribution: continued fraction and series of erfc
@@ -449,9 +520,9 @@ function answer(question, table) {
   const isOfPolysilicon = temperature === REFERENCE && Object.keys(POLYSILICON).every((key) => solids[key] === POLYSILICON[key]);
   const errorsOf = (part) => isOfPolysilicon || !part.margins_of_other_solids ? part : {...part, margins: part.margins_of_other_solids};
   const airs = question.humidities.map((air) => {
-    const isHumid = air > 0 && wetting > ROUNDING, water = isHumid && film(air, temperature, wetting, table.water);
+    const isHumid = air > 0 && wetting > ROUNDING, water = isHumid ? film(air, temperature, wetting, table.water) : null;
     const found = pairs.map((each) => isHumid ? lengths(each, water) : inDryAir(each));
-    return {stated: found[0], members: found.slice(1), errors: errorsOf(errors(isHumid ? table : table.dry)), closed: closedOn ? closedOn(pairs, found, water) : closed};
+    return {water, stated: found[0], members: found.slice(1), errors: errorsOf(errors(isHumid ? table : table.dry)), closed: closedOn ? closedOn(pairs, found, water) : closed};
   });
   const once = (p) => -Math.expm1(Math.log1p(-p) / question.touchdowns);
   const rows = FRACTIONS.map((fraction) => {
@@ -463,7 +534,8 @@ function answer(question, table) {
     const length = (one) => one.closed.length(Math.exp(logarithmOf(one, score, question.averaged)));
     return {fraction, ...row({length: Math.min(...airs.map(length)), intervals: ends})};
   });
-  return {rows, stuck: stated ? stuck(question, airs, stated) : null, life: question.sides ? null : lifeOf(question)};
+  return {rows, stuck: stated ? stuck(question, airs, stated) : null, life: question.sides ? null : lifeOf(question),
+    flat: worstOnFlats(question, airs.map(({water}) => water))};
 }
 const logarithmOf = (one, score, averaged) => averaged ? centre(one, score)[0] : Math.log(lengthAt(one.stated, score));
 function endsOf(one, score, confidence) {

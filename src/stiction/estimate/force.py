@@ -9,18 +9,20 @@ ASSUME: forces are lognormal for the mean of the powers, with the scatter from t
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from stiction.config.units import to_si
 from stiction.estimate import dry
 from stiction.estimate.asked import Asked
+from stiction.estimate.closed import flats
+from stiction.estimate.closed.flats import FlatBound, FlatPull
 from stiction.estimate.closed.life import StopperLife
-from stiction.estimate.length import LengthRow, Lengths, NotLearnt, falling, known_at, of_solids
+from stiction.estimate.length import LengthRow, Lengths, NotLearnt, falling, known_at, on_solids
 from stiction.estimate.state import OF_PATCHES, Film, PatchState
 from stiction.estimate.statistics import Heights
-from stiction.estimate.table import Surrogate
+from stiction.estimate.table import Surrogate, processes
 from stiction.estimate.voltage import Pulled
 
 
@@ -38,7 +40,7 @@ class ForceRow:
         return self.force
 
 
-def reciprocals(patch: PatchState, forces: Surrogate, full: Surrogate, attraction: Surrogate | None = None) -> Lengths:
+def reciprocals(patch: PatchState, forces: Surrogate, full: Surrogate, *changes: Surrogate) -> Lengths:
     """Reciprocals of the pull-off forces of a patch [1/N].
 
     Raises
@@ -46,8 +48,8 @@ def reciprocals(patch: PatchState, forces: Surrogate, full: Surrogate, attractio
     NotLearnt
         If the patch is beyond what was learnt.
     """
-    change, values = (known_at(process, patch.coordinates, OF_PATCHES) for process in (full, forces))
-    summits = falling(of_solids(values, patch, attraction), -math.log(patch.flooded_force))
+    change = known_at(full, patch.coordinates, OF_PATCHES)
+    summits = falling(on_solids(forces, patch, *changes), -math.log(patch.flooded_force))
     return _changed(summits, change["ratio"], max(1.0, change["power"]))
 
 
@@ -71,7 +73,7 @@ def pull_off(patch: PatchState, learnt: Mapping[str, Any]) -> float:
 
 def _reciprocals_of(patch, learnt):
     """Reciprocals of the forces of a patch."""
-    return reciprocals(patch, *(Surrogate(**learnt[name]) for name in ("forces", "full", "attraction")))
+    return reciprocals(patch, *processes(learnt, "forces", "full"))
 
 
 @dataclass(frozen=True)
@@ -80,7 +82,6 @@ class Stopper(Asked):
 
     sides: tuple[float, float]  #: of its area [m]
     force: float | None = None  #: that restores it [N]
-    added: float = 0.0  #: force that a voltage adds [N]
     unit: ClassVar[str] = "uN"  #: of its size, a force
 
     @property
@@ -103,14 +104,18 @@ class Stopper(Asked):
         """Its life."""
         return StopperLife(self.surroundings)
 
+    def on_flats(self, attracted: Sequence[FlatPull]) -> FlatBound:
+        """Force that flat surfaces hold by their attractions."""
+        return flats.of_stopper(math.prod(self.sides), attracted)
+
     def errors(self, table: Mapping[str, Any]) -> Mapping[str, Any]:
         """Part of the table with the errors of its forces."""
         return table["stoppers"]
 
     def lengths(self, heights: Heights, water: Film, table: Mapping[str, Any], *_tips: Surrogate | None) -> Lengths:
         """Reciprocals of its pull-off forces on the sum of two surfaces [1/N]."""
-        learnt, attraction = table["stoppers"], self.solids.attraction(water.energy)
-        patch = PatchState(heights, water, self._area(learnt), self.solids.modulus, attraction)
+        learnt, ratios = table["stoppers"], self.solids.beside_water(water.energy)
+        patch = PatchState(heights, water, self._area(learnt), self.solids.modulus, ratios)
         return _reciprocals_of(patch, learnt)
 
     def in_dry_air(self, heights: Heights, table: Mapping[str, Any]) -> Lengths:

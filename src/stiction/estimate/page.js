@@ -1,5 +1,5 @@
 // Sliders, table and file of the page. The arithmetic is in estimate.js.
-const TABLE = JSON.parse(document.getElementById("content").textContent);
+const [TABLE, PROMISES] = ["content", "promises"].map((id) => JSON.parse(document.getElementById(id).textContent));
 const CANTILEVER = "cantilever", BRIDGE = "bridge", STOPPER = "stopper";
 const INPUTS = [
   ["kind", "Device", [CANTILEVER, BRIDGE, STOPPER], CANTILEVER],
@@ -117,6 +117,7 @@ function write(found, {kind, value}) {
   const [least, most] = outward(found.rows[2].intervals["90"]);
   const safe = isForce ? `at least ${most}` : mustDry ? `at most ${bound(dried[0] * 1e6)}, or it can collapse while ${LIQUID} dries` : `at most ${least}`;
   byId("said").textContent = `1 in 1000 sticks between ${least} and ${most} ${symbol} (90 %): use ${safe}.`;
+  byId("promise").textContent = PROMISES[Number(isForce)];
   byId("before").textContent = leftOut(kind, value);
   const limit = isForce ? found.rows[2].intervals["90"][1] : mustDry ? dried[0] : lowest, size = value(key) * 1e-6;
   const isUnsafe = isForce ? size < limit : size > limit, stated = `${value(key)} ${symbol}`;
@@ -124,12 +125,20 @@ function write(found, {kind, value}) {
   const [middle, low, high] = found.stuck.map((part) => percent(part, value("touchdowns")));
   byId("stuck").textContent = isUnsafe ? `Best estimate: ${middle} stick${high === middle ? "" : `, but up to ${high} (95 %)`}.`
     : `At ${stated}, ${middle} stick (95 %: ${low} to ${high}).`;
+  byId("flat").textContent = flatOf(found.flat, symbol, kind, value);
   byId("life").textContent = found.life ? livesOf(found.life, value(key), kind).join("\n") : "";
 }
 function leftOut(kind, value) {
   const parts = [[kind !== STOPPER && !value("tension_mN_per_m"), "drying"], [airOf(value) !== DRY, "fast separation"]];
   const words = parts.filter(([isLeftOut]) => isLeftOut).map(([, word]) => word).join(" and ");
   return `For exact inputs${words && `, before ${words}`}.`;
+}
+function flatOf({size, tip, isHumid}, symbol, kind, value) {
+  const start = `${value("voltage_V") ? "Without its voltage, flat" : "Flat"}${isHumid ? ", flooded" : ""} surfaces`;
+  const most = `${grouped(bound(size * 1e6, kind === STOPPER))} ${symbol}`;
+  if (kind === STOPPER) return `${start} hold ${most}. No surface of this area holds more.`;
+  if (kind === BRIDGE) return `${start} stick from ${most} on. No surface sticks at a shorter length.`;
+  return `${start} stick from ${bound(tip * 1e6)} ${symbol} on at the tip and from ${most} on along the underside. Rough ones can stick harder, but at the tip alone.`;
 }
 const LIQUID = "liquid", GRAVITY = 9.80665, FATES = ["stands", "may collapse", "collapses"];
 function bound(number, up = false) { // to three digits, not beyond it, of nine that do not show how it was computed
@@ -148,7 +157,7 @@ function refuse(reason) {
   byId("said").className = "said refused";
   byId("said").textContent = `Not known at once: ${reason.message}. A run computes it.`;
   byId("table").innerHTML = "<caption>No number</caption>";
-  for (const id of ["unsafe", "before", "stuck", "life"]) byId(id).textContent = "";
+  for (const id of ["unsafe", "before", "promise", "stuck", "flat", "life"]) byId(id).textContent = "";
 }
 function liquidsOf(kind, value) {
   const tension = value("tension_mN_per_m");

@@ -3,8 +3,11 @@
 python -m stiction.estimate.page FILE
 """
 
+import json
 import sys
 
+from stiction.estimate.answer import CONFIDENCES
+from stiction.estimate.promise import promise
 from stiction.estimate.table import FILE
 from stiction.run.atomic import save_text
 
@@ -15,7 +18,8 @@ def page() -> str:
     text = FILE.with_name("estimate.html").read_text(encoding="utf-8")
     for name, file in parts.items():
         text = text.replace(f"{{{{ {name} }}}}", FILE.with_name(file).read_text(encoding="utf-8").strip())
-    return text
+    promises = [promise(CONFIDENCES[0], is_force) for is_force in (False, True)]
+    return text.replace("{{ promises }}", json.dumps(promises))
 
 
 if __name__ == "__main__":

@@ -12,14 +12,16 @@ from stiction.contact.air import DRY, DRY_AIR, is_possible
 from stiction.estimate import dry
 from stiction.estimate.asked import Asked
 from stiction.estimate.bridge import Bridge
+from stiction.estimate.closed import flats
 from stiction.estimate.closed.beams import SlenderBeam
+from stiction.estimate.closed.flats import FlatBound, FlatPull
 from stiction.estimate.closed.life import BeamLife, Surroundings
 from stiction.estimate.force import Stopper
 from stiction.estimate.length import Impossible, LengthRow, Lengths, NotLearnt, lengths
 from stiction.estimate.solids import SolidPair
 from stiction.estimate.state import Film, TipState, stiffness_of
 from stiction.estimate.statistics import Heights, moments_of, slope_of
-from stiction.estimate.table import Surrogate
+from stiction.estimate.table import Surrogate, processes
 from stiction.estimate.voltage import KEYS as OF_VOLTAGES
 from stiction.estimate.voltage import Driven, drive_of, energy_of, tension_of
 
@@ -110,7 +112,6 @@ class Question(Asked):
     gap: float  #: [m]
     width: float  #: [m]
     length: float | None = None  #: [m]
-    added: float = 0.0  #: energy that a voltage adds [J m⁻²]
 
     @property
     def size(self) -> float | None:
@@ -133,6 +134,10 @@ class Question(Asked):
         sizes = self.thickness, self.gap, self.width, self.solids.beam_modulus
         return BeamLife(SlenderBeam(1, *sizes), self.surroundings)
 
+    def on_flats(self, attracted: Sequence[FlatPull]) -> FlatBound:
+        """Lengths that flat surfaces hold by their attractions."""
+        return flats.of_cantilever(self.life.beam, attracted)
+
     def errors(self, table: Mapping[str, Any]) -> Mapping[str, Any]:
         """Part of the table with the errors of its lengths."""
         return table
@@ -141,9 +146,9 @@ class Question(Asked):
         self, heights: Heights, water: Film, table: Mapping[str, Any], tips: Surrogate, full: Surrogate | None
     ) -> Lengths:
         """Lengths at which it sticks on the sum of two surfaces [m]."""
-        solids, attraction = self.solids, self.solids.attraction(water.energy)
-        state = TipState(heights, water, self._stiffness, self.width, solids.modulus, attraction)
-        return lengths(state, self.gap, tips, full, Surrogate(**table["attraction"]))
+        solids, ratios = self.solids, self.solids.beside_water(water.energy)
+        state = TipState(heights, water, self._stiffness, self.width, solids.modulus, ratios)
+        return lengths(state, self.gap, tips, full, *processes(table))
 
     def in_dry_air(self, heights: Heights, table: Mapping[str, Any]) -> Lengths:
         """Lengths at which it sticks in dry air [m]."""
@@ -399,7 +404,7 @@ def of_area(name: str, device: Mapping[str, Any], sides: Sequence, **more: Any) 
     stated = kind.stated(device) if kind and any(set(way.keys) <= device.keys() for way in kind.ways) else device
     force = to_si(stated["restoring_force_uN"], "uN") if "restoring_force_uN" in stated else None
     added = tension_of(device) * math.prod(area)
-    return Stopper(name, surfaces, members, airs_of(device), area, force, added, **_often(device), **more)
+    return Stopper(name, surfaces, members, airs_of(device), area, force, added=added, **_often(device), **more)
 
 
 def of_middle(name: str, device: Mapping[str, Any], sides: Sequence, **more: Any) -> Bridge:
@@ -407,8 +412,8 @@ def of_middle(name: str, device: Mapping[str, Any], sides: Sequence, **more: Any
     surfaces, members = zip(*sides, strict=True)
     sizes, length = _sizes(device)
     airs, stress = airs_of(device), to_si(device["residual_stress_MPa"], "MPa")
-    added = energy_of(device, sizes[1]), tension_of(device)
-    return Bridge(name, surfaces, members, airs, *sizes, stress, length, *added, **_often(device), **more)
+    more = more | {"added": energy_of(device, sizes[1]), "tension": tension_of(device)}
+    return Bridge(name, surfaces, members, airs, *sizes, stress, length, **_often(device), **more)
 
 
 def _often(device):

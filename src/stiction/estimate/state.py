@@ -10,11 +10,12 @@ Flooded flats of the area A would hold a stopper with the force :math:`p A`.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from stiction.constants import GAS_CONSTANT, WATER_MOLECULE, molar_volume, surface_energy
 from stiction.contact.air import MOLECULES
+from stiction.estimate.solids import OF_POLYSILICON, BesideWater
 from stiction.estimate.statistics import Heights
 
 #: Names of the coordinates, for messages: of both, of a beam and of a stopper.
@@ -39,9 +40,12 @@ OF_PATCHES = (
     "humidity",
     "curvature of the summits (from Hurst exponent, corner and cut-off)",
 )
-#: Name of the coordinate of other solids beside these.
-OF_SOLIDS = "attraction of the solids beside that of the water (from Hamaker constant and contact angles)"
-
+#: Names of the coordinates of other solids beside these.
+OF_SOLIDS = (
+    "attraction of the solids beside that of the water (from Hamaker constant and contact angles)",
+    "attraction of the solids through air beside that through water (from Hamaker constants and contact angles)",
+    "stiffness of the solids beside that of the water (from moduli and contact angles)",
+)
 
 #: Height of the thinnest film that is a liquid [m]. A run bounds thinner ones, which are not learnt.
 THINNEST = MOLECULES * WATER_MOLECULE
@@ -94,8 +98,13 @@ class TipState:
     stiffness: float  #: K = E t³ / h² [N m⁻¹]
     width: float  #: [m]
     modulus: float  #: E of the solids [Pa]
-    attraction: float = 1.0  #: r of `stiction.estimate.solids` [-]
+    beside_water: BesideWater = OF_POLYSILICON
     names: ClassVar[tuple[str, ...]] = COORDINATES
+
+    @property
+    def as_polysilicon(self) -> "TipState":
+        """State with solids as stiff beside the water as polysilicon."""
+        return replace(self, modulus=self.modulus / self.beside_water.stiffness)
 
     @property
     def flooded_slope(self) -> float:
@@ -123,8 +132,13 @@ class PatchState:
     film: Film
     area: float  #: [m²]
     modulus: float  #: E of the solids [Pa]
-    attraction: float = 1.0  #: r of `stiction.estimate.solids` [-]
+    beside_water: BesideWater = OF_POLYSILICON
     names: ClassVar[tuple[str, ...]] = OF_PATCHES
+
+    @property
+    def as_polysilicon(self) -> "PatchState":
+        """State with solids as stiff beside the water as polysilicon."""
+        return replace(self, modulus=self.modulus / self.beside_water.stiffness)
 
     @property
     def flooded_force(self) -> float:

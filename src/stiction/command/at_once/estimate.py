@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from typing import Any, NamedTuple
 
-from stiction.command.at_once import life
+from stiction.command.at_once import flats, life
 from stiction.command.output_streams import say
 from stiction.config.units import from_si
 from stiction.contact.air import DRY, DRY_AIR, Air
@@ -288,6 +288,9 @@ def shown(estimate: Estimate) -> Iterator[str]:
     if estimate.stuck is not None:
         yield f"  {_at_its_size(estimate, symbol)}"
     yield f"  {chosen(estimate)}."
+    if estimate.promise:
+        yield f"  {estimate.promise}"
+    yield f"  {flats.sentences(estimate, symbol)}"
     yield from (f"  {sentence}" for sentence in life.sentences(estimate, symbol))
 
 

@@ -66,11 +66,11 @@ class SlenderBeam:
     stress: float = 0.0  #: of a bridge [Pa]
 
     @property
-    def _stiffness(self):
+    def stiffness(self) -> float:
         """E I [N m²]."""
         return self.modulus * self.width * self.thickness**3 / 12
 
-    def _tension(self, length):
+    def tension(self, length: float) -> float:
         """τ at a length [m]."""
         return 12 * self.stress / self.modulus * (length / self.thickness) ** 2
 
@@ -93,7 +93,7 @@ class SlenderBeam:
                 """State nearer to a balance."""
                 length = (math.exp(state[0]) * scale) ** 0.25
                 load = GrowingLoad(along, lambda _: unit / length)
-                return BentBeam(self.clamps, self._tension(length)).nearer(load, deflection, state[1:])
+                return BentBeam(self.clamps, self.tension(length)).nearer(load, deflection, state[1:])
 
             return (math.exp(settled(nearer, AT_REST)[0]) * scale) ** 0.25
 
@@ -107,36 +107,39 @@ class SlenderBeam:
 
         def at_fold(length):
             """Length with the load at the fold of a length [m]."""
-            return (BentBeam(self.clamps, self._tension(length)).fold_of_drop() * scale) ** 0.25
+            return (BentBeam(self.clamps, self.tension(length)).fold_of_drop() * scale) ** 0.25
 
         return _settled(at_fold, scale**0.25)
 
     def _scale(self, liquid):
         """L⁴ / λ [m⁴]."""
-        return self._stiffness * self.gap**2 / (2 * liquid.adhesion * self.width)
+        return self.stiffness * self.gap**2 / (2 * liquid.adhesion * self.width)
 
     def released(self, liquid: DryingLiquid) -> float:
         """Longest beam to come free after a collapse, of bridges the length of two meeting cracks [m]."""
         if liquid.adhesion <= 0:
             return math.inf
-        if self.clamps == 1:
-            return (3 / 16 * self.modulus * self.thickness**3 * self.gap**2 / liquid.adhesion) ** 0.25
-        pull = math.sqrt(4 * self.width * liquid.adhesion / self._stiffness) / self.gap
-        decay = math.sqrt(self._tension(1.0))
-        return 2 * _settled(lambda crack: math.sqrt(end_stiffness(decay * crack)[1] / pull), math.sqrt(6 / pull))
+        crack = self.arrested(2 * liquid.adhesion)
+        return crack / math.sqrt(2) if self.clamps == 1 else 2 * crack
+
+    def arrested(self, energy: float) -> float:
+        """Length at which a crack stops at an adhesion energy [J m⁻²], `stiction.beam.energy.arrest_length` [m]."""
+        pull = math.sqrt(2 * self.width * energy / self.stiffness) / self.gap
+        decay = math.sqrt(self.tension(1.0))
+        return _settled(lambda crack: math.sqrt(end_stiffness(decay * crack)[1] / pull), math.sqrt(6 / pull))
 
     # Touching
 
     def slow_shock(self, length: float, density: float) -> float:
         """Slowly growing acceleration that brings down the end or middle of a beam [m s⁻²]. Density [kg m⁻³]."""
         weight = density * self.width * self.thickness * length**4
-        return self._stiffness * self.gap / (weight * self._by_unit_load(length))
+        return self.stiffness * self.gap / (weight * self._by_unit_load(length))
 
     def _by_unit_load(self, length):
         """Deflection U of the end or middle by a unit load [-]."""
         if self.clamps == 1:
             return 1 / 8
-        k = math.sqrt(self._tension(length))
+        k = math.sqrt(self.tension(length))
         return 1 / 384 - k**2 / 15360 if k < SLACK else (1 / 8 - math.tanh(k / 4) / (2 * k)) / k**2
 
     def half_sine_shock(self, length: float, density: float) -> float:
@@ -147,7 +150,7 @@ class SlenderBeam:
         """Deflection by all modes of one sign over a uniform load's, as `stiction.life.bending.Bent.overshoot`."""
         if self.clamps == 1:
             return _OF_CANTILEVER
-        tension = self._tension(length)
+        tension = self.tension(length)
         return sum(abs(_by_mode(number, tension)) for number in range(1, _MODES + 1)) / self._by_unit_load(length)
 
     def pull_in_at_once(self, length: float) -> float:
@@ -164,8 +167,8 @@ class SlenderBeam:
             return (1 + 2 * edge(u) / self.width) / (1 - u) ** 2
 
         load = GrowingLoad(along, lambda u: along(u) * edge(u) / length)
-        fold = BentBeam(self.clamps, self._tension(length)).fold_at_once(load)
-        unit = 2 * self._stiffness * self.gap**3 / (VACUUM_PERMITTIVITY * self.width * length**4)
+        fold = BentBeam(self.clamps, self.tension(length)).fold_at_once(load)
+        unit = 2 * self.stiffness * self.gap**3 / (VACUUM_PERMITTIVITY * self.width * length**4)
         return math.sqrt(fold * unit)
 
 

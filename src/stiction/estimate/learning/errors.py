@@ -47,8 +47,8 @@ class Tested:
         return math.log(self.true / self.estimate)
 
     def score(self, rest: float) -> float:
-        """Size of the error over its difficulty."""
-        return abs(self.error) / difficulty(self.slope, rest)
+        """Error over its difficulty, negative on the unsafe side."""
+        return self.error / difficulty(self.slope, rest)
 
 
 #: Processes of tips on summits and in full contact that have not learnt a point.
@@ -121,7 +121,7 @@ def conformal(errors: np.ndarray, confidence: float) -> float:
 
 
 def scores(surfaces: Sequence[Tested], rest: float) -> np.ndarray:
-    """Sizes of errors over their difficulties on the surfaces that the estimate does not refuse."""
+    """Errors over their difficulties on the surfaces that the estimate does not refuse (n,)."""
     return np.array([surface.score(rest) for surface in surfaces if surface.is_known])
 
 

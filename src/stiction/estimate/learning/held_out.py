@@ -5,11 +5,11 @@ python -m stiction.estimate.learning.held_out FOLDER [SAFE_LENGTHS.csv STOPPERS.
 
 import csv
 import sys
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from itertools import chain
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -17,16 +17,24 @@ from stiction.config.reading import read
 from stiction.config.units import from_si
 from stiction.contact.air import Air
 from stiction.estimate.answer import CHOSEN, CONFIDENCES, OF_OTHER_SOLIDS, answer, difficulty
-from stiction.estimate.dry import processes
 from stiction.estimate.learning import dry_bridges, dry_rows
 from stiction.estimate.learning.design import SurfaceLaw
 from stiction.estimate.learning.dry import CONSTANTS, DryEffort
-from stiction.estimate.learning.errors import coverage, noise_of, scores, tested, tested_bridges, tested_forces
+from stiction.estimate.learning.errors import (
+    Tested,
+    coverage,
+    noise_of,
+    scores,
+    tested,
+    tested_bridges,
+    tested_forces,
+)
 from stiction.estimate.learning.other_solids import rows as of_solids
 from stiction.estimate.learning.other_solids.points import RANGES, TEMPERATURES
 from stiction.estimate.length import NotLearnt
+from stiction.estimate.promise import kept
 from stiction.estimate.question import questions
-from stiction.estimate.table import Surrogate, content, known
+from stiction.estimate.table import Surrogate, content, known, processes
 from stiction.rounding import bounding
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.opening import EITHER, MIDDLE
@@ -45,19 +53,20 @@ SETS = {
 OTHER_SOLIDS = {name: words for name, words in SETS.items() if not name.endswith(SurfaceLaw.PAPER)}
 #: Rule and head of the tables of drawn surfaces.
 _RULE = "|---|---|---|---|---|---|---|---|---|"
-_HEAD = "| surfaces | number | refused | mean [%] | rms [%] | largest [%] | half [%] | inside 90 % | inside 95 % |"
+_HEAD = "| surfaces | number | refused | mean [%] | rms [%] | half [%] | beyond the end | inside 90 % | inside 95 % |"
 #: Words before both tables of drawn surfaces.
 _OF_LENGTHS = (
     "`stiction estimate` knows cantilevers, bridges and stoppers in humid and dry air, and "
     "refuses all else. Below are lengths for 1 in 1000, of polysilicon at 300 K, beside those of drawn surfaces that "
     "it has not learnt, with tips changed by full contact as in a run, on strips of at most 12 µm. The error is the "
     "logarithm of the latter over the estimate, negative on the unsafe side. Half: median of half of the interval of "
-    "90 %. In brackets: 95 % range of the share inside. Drying, shock and pull-in are closed forms of "
-    "[the life](../life.md). Where water condenses, the estimate of a device with `shock_g` leaves the size to a run."
+    "90 %. The end: that of 90 % on the safe side, which is the size to use. In brackets: 95 % range of the fraction. "
+    "Drying, shock and pull-in are closed forms of [the life](../life.md). Where water condenses, the estimate of a "
+    "device with `shock_g` leaves the size to a run."
 )
 _OF_BRIDGES = (
     "The same for bridges, beside finite elements of their middle on force laws as of a run. Errors and halves are of "
-    "the length without stress that is held as well: stress multiplies them by a factor from 1 to 8/3. Left out are "
+    "the length without stress that is held as well: stress multiplies both by a factor from 1 to 8/3. Left out are "
     "those of which nine of ten come free of two cracks: all are longer than 1 mm."
 )
 _OF_FORCES = (
@@ -73,10 +82,10 @@ _OF_SOLIDS = (
     "of other solids are, as all intervals. The control takes them as polysilicon that water wets perfectly:"
 )
 _OTHER_BRIDGES = (
-    "Forces of other solids err to the unsafe side on average, within their intervals: the estimate takes attraction "
-    "through air, beyond the film, to follow from that through water. Intervals of bridges of other solids are wider "
-    "by the larger of both factors. No such bridge was tested in full contact. In dry air other moduli are exactly "
-    "similar, and intervals are those above."
+    "Three changes of other solids are learnt: by their attraction through water, by that through air, and by their "
+    "stiffness, each beside that of the water. Of bridges the last is not: intervals are wider by the larger of both "
+    "factors, and no such bridge was tested in full contact. In dry air other moduli are exactly similar, and "
+    "intervals are those above."
 )
 _BRIDGES_IN_DRY_AIR = (
     "Lengths of bridges in dry air, by the closed form with the pull-off pressure of the estimate of stoppers. A "
@@ -87,25 +96,30 @@ _FORCES_IN_DRY_AIR = "Forces in dry air, beside patches changed by {} strips of 
 
 def lines(folder: Path) -> Iterator[str]:
     """Lines of the tables of drawn surfaces."""
-    table, dry, (of_tips, of_patches) = content(), content()["dry"], DryEffort.strips
-    in_dry_air = _BRIDGES_IN_DRY_AIR.format(_points(dry_bridges.SETS))
-    forces = processes(dry["stoppers"], "forces", "full")
-    for words, test, errors, learnt_processes in (
-        (_OF_LENGTHS, tested, table, processes(table, "tips", "full")),
-        (_OF_BRIDGES, tested_bridges, table["bridges"], processes(table["bridges"], "middle", "full")),
-        (_OF_FORCES, tested_forces, table["stoppers"], processes(table["stoppers"], "forces", "full")),
-        (_IN_DRY_AIR.format(*CONSTANTS, of_tips), dry_rows.tested, dry, processes(dry, "tips", "full")),
-        (_FORCES_IN_DRY_AIR.format(of_patches), dry_rows.tested_forces, dry["stoppers"], forces),
-        (in_dry_air, dry_rows.tested_bridges, dry["bridges"], (*processes(dry["bridges"], "middle"), *forces)),
-    ):
-        yield from (words, "", _HEAD, _RULE)
-        for name, of_set in SETS.items():
-            learnt = table["modulus"], errors["tested_score"], lambda _, learnt=learnt_processes: learnt
-            if surfaces := list(test(folder, name, *learnt)):
-                yield _row(of_set, surfaces, errors)
-        yield ""
-    yield from _of_other_solids(folder, table)
+    table = content()
+    tables = [*_of_polysilicon(folder, table), *_of_other_solids(folder, table)]
+    for words, rows in tables:
+        yield from (words, "", _HEAD, _RULE, *(row.line for row in rows), "")
+    yield from (_OTHER_BRIDGES, "")
+    yield from _beyond([row for _, rows in tables for row in rows if row.is_checked])
     yield from _of_noise(folder, table["tested_score"])
+
+
+def _of_polysilicon(folder, table):
+    """Words and rows of the tables of polysilicon."""
+    dry, (of_tips, of_patches) = table["dry"], DryEffort.strips
+    of_bridges, of_forces = _BRIDGES_IN_DRY_AIR.format(_points(dry_bridges.SETS)), ("forces", "full")
+    for words, test, errors, names in (
+        (_OF_LENGTHS, tested, table, ("tips", "full")),
+        (_OF_BRIDGES, tested_bridges, table["bridges"], ("middle", "full")),
+        (_OF_FORCES, tested_forces, table["stoppers"], of_forces),
+        (_IN_DRY_AIR.format(*CONSTANTS, of_tips), dry_rows.tested, dry, ("tips", "full")),
+        (_FORCES_IN_DRY_AIR.format(of_patches), dry_rows.tested_forces, dry["stoppers"], of_forces),
+        (of_bridges, dry_rows.tested_bridges, dry["stoppers"] | dry["bridges"], ("middle", *of_forces)),
+    ):
+        of_part = [Surrogate(**errors[name]) for name in names]
+        learnt = table["modulus"], errors["tested_score"], lambda _, of_part=of_part: of_part
+        yield words, _rows_of(SETS, errors, lambda name, test=test, learnt=learnt: test(folder, name, *learnt))
 
 
 def _points(sets):
@@ -114,28 +128,45 @@ def _points(sets):
 
 
 def _of_other_solids(folder, table):
-    """Lines of the tables of other solids."""
+    """Words and rows of the tables of other solids."""
     ranges = [end for name in ("modulus", "hamaker", "angle") for end in RANGES[name]]
     for words, test, errors, first in (
         ("Lengths", of_solids.tested, table, "tips"),
         ("Forces", of_solids.tested_forces, table["stoppers"], "forces"),
     ):
-        yield from (
-            _OF_SOLIDS.format(words, *ranges, *TEMPERATURES),
-            "",
-            _HEAD,
-            _RULE,
-        )
-        learnt = errors["tested_score"], [Surrogate(**errors[name]) for name in (first, "full", "attraction")]
+        learnt = errors["tested_score"], processes(errors, first, "full")
         wider = {**errors, "margins": errors[OF_OTHER_SOLIDS]}
-        for name, of_set in OTHER_SOLIDS.items():
-            if surfaces := list(test(folder, name, *learnt, as_polysilicon=False)):
-                yield _row(of_set, surfaces, wider)
-        checked = [name for name in OTHER_SOLIDS if name.startswith("check")]
-        if control := [surface for name in checked for surface in test(folder, name, *learnt, as_polysilicon=True)]:
-            yield _row("in no decision, control", control, wider)
+
+        def found(name, as_polysilicon=False, test=test, learnt=learnt):
+            """Surfaces of a set."""
+            return test(folder, name, *learnt, as_polysilicon=as_polysilicon)
+
+        rows = _rows_of(OTHER_SOLIDS, wider, found)
+        control = [surface for name in OTHER_SOLIDS if _is_checked(name) for surface in found(name, True)]
+        rows += [RowOfSurfaces("in no decision, control", control, wider)] if control else []
+        yield _OF_SOLIDS.format(words, *ranges, *TEMPERATURES), rows
+
+
+def _is_checked(name):
+    """Whether a set decides nothing."""
+    return name.startswith("check")
+
+
+def _rows_of(sets, errors, found):
+    """Rows of some sets of which surfaces are found, with the errors of a part of the table."""
+    surfaces = {name: list(found(name)) for name in sets}
+    return [RowOfSurfaces(sets[name], each, errors, _is_checked(name)) for name, each in surfaces.items() if each]
+
+
+def _beyond(rows):
+    """Lines about the surfaces beyond the end to use in some rows."""
+    beyond = np.concatenate([row.is_beyond for row in rows]) if rows else np.zeros(0)
+    if len(beyond):
+        yield (
+            f"Of all surfaces in no decision, {beyond.sum()} of {len(beyond)} lie beyond the end to use: "
+            f"{100 * beyond.mean():.1f} %, where the promise allows {100 - kept(CONFIDENCES[0]):g} %."
+        )
         yield ""
-    yield from (_OTHER_BRIDGES, "")
 
 
 def _of_noise(folder, score):
@@ -169,9 +200,13 @@ def of_runs(lengths: str, forces: str, devices: str) -> Iterator[str]:
     yield "|---|---|---|---|---|---|"
     rows = list(_rows(lengths, forces, asked))
     yield from (row.line for row in rows)
-    chosen = [row.is_inside for row in rows if row.share == CHOSEN]
+    chosen = [row for row in rows if row.share == CHOSEN]
+    inside, beyond = (sum(each) for each in zip(*((row.is_inside, row.is_beyond) for row in chosen), strict=True))
     yield ""
-    yield f"At 1 in {1 / CHOSEN:.0f}, {sum(chosen)} of {len(chosen)} sizes of the run are inside the interval of 90 %."
+    yield (
+        f"At 1 in {1 / CHOSEN:.0f}, {inside} of {len(chosen)} sizes of the run are inside the interval of 90 %, "
+        f"and {beyond} of {len(chosen)} lie beyond the end to use."
+    )
     yield ""
 
 
@@ -181,6 +216,7 @@ class RowBesideRun(NamedTuple):
     line: str
     share: float
     is_inside: bool  #: whether the size of the run is in the interval of 90 %
+    is_beyond: bool  #: whether it is beyond the end to use
 
 
 def _rows(lengths, forces, asked):
@@ -211,13 +247,15 @@ def _beside(row, share, of_run, question):
     """Row of one length or force of a run, in the unit of the question."""
     humidity = float(row["relative_humidity"])
     once = replace(question, touchdowns=1, humidities=(humidity,))
-    estimated = next(each for each in answer(once, *known()).rows if np.isclose(each.fraction, share))
+    estimate = answer(once, *known())
+    estimated = next(each for each in estimate.rows if np.isclose(each.fraction, share))
     low, high = (from_si(end, question.unit) for end in estimated.intervals["90"])
     size = _three_digits(from_si(estimated.size, question.unit))
     cells = [row["device"], f"{Air(humidity).name}", f"{1 / share:.0f}"]
     cells += [f"{_three_digits(of_run)} {_WORDS[question.unit]}", size]
     ends = f"{bounding(low, 3, up=False)} to {bounding(high, 3, up=True)}"
-    return RowBesideRun(f"| {' | '.join([*cells, ends])} |", share, low <= of_run <= high)
+    is_beyond = of_run > high if estimate.is_force else of_run < low
+    return RowBesideRun(f"| {' | '.join([*cells, ends])} |", share, low <= of_run <= high, is_beyond)
 
 
 def _three_digits(number):
@@ -225,21 +263,47 @@ def _three_digits(number):
     return f"{float(f'{number:.3g}'):g}"
 
 
-def _row(words, surfaces, of_part):
-    """Row of one set, with the errors of a part of the table."""
-    answered, rest, margins = [surface for surface in surfaces if surface.is_known], of_part["rest"], of_part["margins"]
-    errors = np.array([surface.error for surface in answered])
-    halves = [margins["90"] * difficulty(surface.slope, rest) for surface in answered]
-    numbers = [np.mean(errors), np.sqrt(np.mean(errors**2)), np.abs(errors).max(), np.median(halves)]
-    cells = [words, len(surfaces), len(surfaces) - len(answered), *(f"{100 * number:.1f}" for number in numbers)]
-    cells += [_inside(scores(answered, rest) <= margins[name]) for name in CONFIDENCES]
-    return f"| {' | '.join(map(str, cells))} |"
+@dataclass(frozen=True)
+class RowOfSurfaces:
+    """Row of a table of drawn surfaces."""
+
+    words: str
+    surfaces: Sequence[Tested]
+    of_part: Mapping[str, Any]  #: part of the table with their errors
+    is_checked: bool = False  #: whether they decide nothing, and are estimated as what they are
+
+    @property
+    def _answered(self):
+        """Surfaces that the estimate does not refuse."""
+        return [surface for surface in self.surfaces if surface.is_known]
+
+    @property
+    def _scores(self):
+        """Their errors over their difficulties (n,)."""
+        return scores(self.surfaces, self.of_part["rest"])
+
+    @property
+    def is_beyond(self) -> np.ndarray:
+        """Whether their sizes are on the unsafe side of the end to use (n,)."""
+        return self._scores < -self.of_part["margins"][CONFIDENCES[0]]
+
+    @property
+    def line(self) -> str:
+        """Row as a text."""
+        answered, margins = self._answered, self.of_part["margins"]
+        errors = np.array([surface.error for surface in answered])
+        halves = [margins[CONFIDENCES[0]] * difficulty(surface.slope, self.of_part["rest"]) for surface in answered]
+        numbers = [np.mean(errors), np.sqrt(np.mean(errors**2)), np.median(halves)]
+        cells = [self.words, len(self.surfaces), len(self.surfaces) - len(answered)]
+        cells += [*(f"{100 * number:.1f}" for number in numbers), _counted(self.is_beyond)]
+        cells += [_counted(np.abs(self._scores) <= margins[name]) for name in CONFIDENCES]
+        return f"| {' | '.join(map(str, cells))} |"
 
 
-def _inside(is_inside):
-    """Share of surfaces whose errors are within a margin (n,), with its range."""
-    low, high = coverage(int(is_inside.sum()), len(is_inside))
-    return f"{is_inside.sum()} of {len(is_inside)} ({100 * low:.0f} to {100 * high:.0f} %)"
+def _counted(are):
+    """Number of surfaces of which something is true (n,), with the range of their fraction."""
+    low, high = coverage(int(are.sum()), len(are))
+    return f"{are.sum()} of {len(are)} ({100 * low:.0f} to {100 * high:.0f} %)"
 
 
 if __name__ == "__main__":
