@@ -100,7 +100,7 @@ class OnSolids(Protocol):
 def on_solids(process: Surrogate, state: OnSolids, *changes: Surrogate) -> Mapping[str, float]:
     """Quantities of a process on the solids of a state, from those on polysilicon.
 
-    By the changes for one of the logarithm of each of `BesideWater.logarithms`.
+    By the changes for one of each of `stiction.estimate.solids.BesideWater.logarithms`.
 
     Raises
     ------
