@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -390,14 +389,59 @@ def test_ratios_of_points_are_within_their_range_and_each_its_own(ratio):
         assert effort.all == training.SETS[name].all[: effort.points]
 
 
-@pytest.mark.parametrize(("before", "ratio"), list(pairwise(ALL)), ids=lambda ratio: ratio.name)
-def test_points_of_a_ratio_have_the_other_ratios_of_those_beside_which_they_are(before, ratio):
-    assert ratio.before is before
-    assert ratio.points <= before.points
-    assert ratio.bridges <= before.bridges
-    ratios, of_both = vars(ratio.beside_water(POINT, 3)), vars(before.beside_water(POINT, 3))
-    assert of_both[ratio.name] == 1.0 != ratios[ratio.name]
-    assert {name for name in ratios if ratios[name] != of_both[name]} == {ratio.name}
+@pytest.mark.parametrize("ratio", ALL, ids=lambda ratio: ratio.name)
+def test_points_of_a_ratio_have_the_other_ratios_of_those_beside_which_they_are(ratio):
+    for mine, of_before in ((ratio.points, "points"), (ratio.bridges, "bridges")):
+        assert mine <= getattr(ratio.before or training.SETS["learn_any"], of_before, math.inf)
+    before = ratio.before.beside_water(POINT, 3) if ratio.before else OF_POLYSILICON
+    ratios, without = vars(ratio.beside_water(POINT, 3)), vars(before)
+    assert without[ratio.name] == 1.0 != ratios[ratio.name]
+    assert {name for name in ratios if ratios[name] != without[name]} == {ratio.name}
+
+
+def test_nothing_is_learnt_of_the_stiffness_on_polysilicon_alone():
+    """The tension of its water follows from film, rms and spectrum, until moduli differ."""
+
+    def least(moduli):
+        """Least scatter of any combination of the coordinates in their own scatters."""
+        states = [
+            PatchState(of_pair(each.sides), film(0.4 + 0.01 * k, 300.0, 2.0), 1e-12 * (1 + k % 7), modulus)
+            for k, (each, modulus) in enumerate(zip(training.SETS["check_any"].all, moduli, strict=True))
+        ]
+        coordinates = np.array([state.coordinates for state in states])
+        standard = (coordinates - coordinates.mean(axis=0)) / coordinates.std(axis=0)
+        return np.linalg.svd(standard, compute_uv=False).min() / math.sqrt(len(standard))
+
+    number = training.SETS["check_any"].points
+    assert least([164e9] * number) < 1e-9
+    assert least(np.exp(np.random.default_rng(1).uniform(24.8, 26.7, number))) > 0.1, "the control: other moduli"
+
+
+@given(st.floats(5e9, 5e11), st.floats(0.5, 2.0), st.floats(280, 360))
+def test_states_know_the_stiffness_of_solids_by_its_ratio_alone(modulus, wetting, temperature):
+    water = film(0.7, temperature, wetting)
+    pair = SolidPair(modulus=modulus, wetting=wetting)
+    stiff, own = pair.beside_water(water.energy), SolidPair(wetting=wetting).beside_water(water.energy)
+    for state, key in (
+        (TipState(HEIGHTS, water, 7000.0, 20e-6, modulus, stiff), "modulus"),
+        (PatchState(HEIGHTS, water, 9e-12, modulus, stiff), "modulus"),
+        (MiddleState(HEIGHTS, water, 2e-6, 2e-6, 30e-6, 50e6, 164e9, modulus, stiff), "modulus_in_contact"),
+    ):
+        of_polysilicon = replace(state, beside_water=own, **{key: 164e9})
+        np.testing.assert_allclose(state.coordinates, of_polysilicon.coordinates, rtol=1e-9)
+        control = replace(state, **{key: 2 * modulus}).coordinates
+        assert control[1] == pytest.approx(state.coordinates[1] - math.log(2))
+
+
+def test_bridges_of_stiffer_solids_are_thinner_so_that_their_coordinates_stay():
+    sizes = np.array([[2e-6, 1.5e-6, 50e6], [3e-6, 1e-6, 20e6]])
+    for (thickness, gap, stress), size in zip(ratios.as_stiff(sizes, 5.0), sizes.tolist(), strict=True):
+        own = MiddleState(HEIGHTS, WATER, size[0], size[1], 30e-6, size[2], 164e9, 164e9)
+        stiff = replace(own, thickness=thickness, gap=gap, stress=stress, modulus=5 * 164e9)
+        np.testing.assert_allclose(stiff.coordinates, own.coordinates, rtol=1e-12)
+        assert stiff.flooded_length == pytest.approx(own.flooded_length)
+        assert stiff.stretched.bare(2e-4) == pytest.approx(own.stretched.bare(2e-4))
+        assert replace(own, modulus=5 * 164e9).coordinates != pytest.approx(own.coordinates), "the control"
 
 
 @pytest.mark.parametrize("numbers", [(0.05, 1.0), (1.0, 1.0), (4.0, 1.0), (0.3, 2.0), (1.0, 1.0, 3.0), (0.3, 2.0, 0.4)])
@@ -482,22 +526,21 @@ def first_point():
 def test_rows_of_a_ratio_have_the_change_of_their_own_contacts(tmp_path, ratio, by_one):
     """The slope by the logarithm of the ratio alone: numbers grow by another power of the other ones."""
     airs, ((point,), seed) = saved(tmp_path, (0.8, 0.3, -0.5)), first_point()
-    kinds = [rows.rows_of_tips, rows.rows_of_patches, *[rows.rows_of_bridges] * bool(ratio.bridges)]
-    of_all = [of(tmp_path, 164e9, ratio) for of in kinds]
-    tips, of_patches, *of_bridges = (each.rows for each in of_all)
-    counts = [len(each.surface) for each in (tips, of_patches, *of_bridges)]
-    assert counts == [6, 2, 1][: len(kinds)], "free bridges are unknown"
-    for of_middles in of_bridges:
-        np.testing.assert_allclose(of_middles.values["at_2"], by_one, rtol=1e-5)
+    of_all = [of(tmp_path, 164e9, ratio) for of in (rows.rows_of_tips, rows.rows_of_patches, rows.rows_of_bridges)]
+    tips, of_patches, of_bridges = (each.rows for each in of_all)
+    counts = tuple(len(each.surface) for each in (tips, of_patches, of_bridges))
+    assert counts == (6, 2, 1), "free bridges are unknown"
+    np.testing.assert_allclose(of_bridges.values["at_2"], by_one, rtol=1e-5)
     for values in (*tips.values.values(), *of_patches.values.values()):
         np.testing.assert_allclose(values, -by_one, rtol=1e-5)
-    logarithms = ratio.beside_water(point, seed).logarithms[: ratio.number]
-    for each, names in zip(of_all, (COORDINATES, OF_PATCHES, OF_BRIDGES), strict=False):
+    logarithms = ratio.beside_water(point, seed).logarithms
+    differ = [number for number, logarithm in enumerate(logarithms) if logarithm]
+    for each, names in zip(of_all, (COORDINATES, OF_PATCHES, OF_BRIDGES), strict=True):
         np.testing.assert_allclose(each.rows.coordinates[0, len(names) :], logarithms)
-        assert each.columns[-ratio.number :] == tuple(range(len(names), len(names) + ratio.number))
-        assert max(each.columns[: -ratio.number]) < len(names)
+        assert [column - len(names) for column in each.columns if column >= len(names)] == differ
+        assert each.columns[-1] == len(names) + list(vars(OF_POLYSILICON)).index(ratio.name)
     expected = states_of(point, airs, 164e9)[1][2].coordinates
-    np.testing.assert_allclose(tips.coordinates[-1, : -ratio.number], expected)
+    np.testing.assert_allclose(tips.coordinates[-1, : len(expected)], expected)
 
 
 def test_a_tested_length_on_other_solids_is_that_of_its_changed_tips(tmp_path):

@@ -101,11 +101,6 @@ class MiddleState:
     names: ClassVar[tuple[str, ...]] = COORDINATES
 
     @property
-    def as_polysilicon(self) -> "MiddleState":
-        """State itself. ASSUME: of bridges, the stiffness of the solids acts by the coordinates alone."""
-        return self
-
-    @property
     def held(self) -> float:
         """Product e f L⁸ with which it is held without stress [N² m⁵]."""
         return held_by(self.modulus * self.thickness**3, self.gap)

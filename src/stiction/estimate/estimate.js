@@ -49,7 +49,6 @@ function besideWater({throughWater, inDryAir, modulus}, {energy}, [tension]) {
   const air = inDryAir / own.inDryAir * byWater / (following(water * own.throughWater) / following(own.throughWater));
   return [water, air, modulus / own.modulus * byWater];
 }
-const asPolysilicon = (state) => ({...state, modulus: state.modulus / state.besideWater[2]});
 const CHANGES = ["attraction", "attraction_through_air", "stiffness"], OF_SOLIDS = [
   "attraction of the solids beside that of the water (from Hamaker constant and contact angles)",
   "attraction of the solids through air beside that through water (from Hamaker constants and contact angles)",
@@ -57,7 +56,7 @@ const CHANGES = ["attraction", "attraction_through_air", "stiffness"], OF_SOLIDS
 function onSolids(process, ratios, place, part) {
   const by = ratios.map(Math.log), changed = {...known(process, place, part.coordinates)};
   CHANGES.forEach((name, k) => {
-    if (!by[k] || !part[name]) return;
+    if (!by[k]) return;
     const byOne = known(part[name], [...place, ...by], [...part.coordinates, ...OF_SOLIDS]);
     for (const each of ["at_0", "at_1", "at_2"]) changed[each] += by[k] * byOne[each];
   });
@@ -65,9 +64,9 @@ function onSolids(process, ratios, place, part) {
 }
 const curvature = ({moments: [, second, fourth]}) => Math.sqrt(fourth / second);
 const tensionOf = ({height, energy}) => energy / height;
-function ofContact({heights, film, modulus}) {
+function ofContact({heights, film, modulus, besideWater: [, , stiffness]}) {
   const [low, second, fourth] = heights.moments, slope = heights.rms * Math.sqrt(second);
-  return [Math.log(heights.rms / film.height), Math.log(tensionOf(film) / (modulus * slope)), Math.log(fourth / second ** 2),
+  return [Math.log(heights.rms / film.height), Math.log(tensionOf(film) / (modulus / stiffness * slope)), Math.log(fourth / second ** 2),
     Math.log(low ** 2 * second), heights.skewness, heights.kurtosis];
 }
 const floodedSlope = (state) => (13.5 * state.film.energy / state.stiffness) ** 0.25;
@@ -109,7 +108,7 @@ function falling(values, shift) {
   return {logarithms: [first, second, third], slope: Math.max(LEAST, values.slope)};
 }
 function onSummits(state, gap, table) {
-  return falling(onSolids(table.tips, state.besideWater, coordinates(asPolysilicon(state)), table), Math.log(1.5 * gap / floodedSlope(state)));
+  return falling(onSolids(table.tips, state.besideWater, coordinates(state), table), Math.log(1.5 * gap / floodedSlope(state)));
 }
 function lengthAt({logarithms: [first, second, third], slope}, score) {
   const [, b, c] = SCORES;
@@ -135,8 +134,8 @@ function lengths(state, gap, table) {
 
 // force: its reciprocal stands for a length
 function reciprocals(patch, stoppers) {
-  const {ratio, power} = known(stoppers.full, ofPatch(patch), stoppers.coordinates);
-  const values = onSolids(stoppers.forces, patch.besideWater, ofPatch(asPolysilicon(patch)), stoppers);
+  const place = ofPatch(patch), {ratio, power} = known(stoppers.full, place, stoppers.coordinates);
+  const values = onSolids(stoppers.forces, patch.besideWater, place, stoppers);
   return changedBy(falling(values, -Math.log(tensionOf(patch.film) * patch.area)), ratio, Math.max(1, power));
 }
 function changedBy({logarithms, slope}, ratio, power) {

@@ -96,11 +96,6 @@ class OnSolids(Protocol):
     coordinates: Sequence[float]
     names: ClassVar[tuple[str, ...]]
 
-    @property
-    def as_polysilicon(self) -> "OnSolids":
-        """State of which quantities were learnt, with solids as stiff beside the water as polysilicon."""
-        ...
-
 
 def on_solids(process: Surrogate, state: OnSolids, *changes: Surrogate) -> Mapping[str, float]:
     """Quantities of a process on the solids of a state, from those on polysilicon.
@@ -112,11 +107,11 @@ def on_solids(process: Surrogate, state: OnSolids, *changes: Surrogate) -> Mappi
     NotLearnt
         If the state is beyond what was learnt.
     """
-    learnt, by = state.as_polysilicon.coordinates, state.beside_water.logarithms
-    values = dict(known_at(process, learnt, state.names))
+    coordinates, by = state.coordinates, state.beside_water.logarithms
+    values = dict(known_at(process, coordinates, state.names))
     for change_by_one, logarithm in zip(changes, by, strict=False):
         if logarithm:
-            of_one = known_at(change_by_one, (*learnt, *by), (*state.names, *OF_SOLIDS))
+            of_one = known_at(change_by_one, (*coordinates, *by), (*state.names, *OF_SOLIDS))
             values |= {name: values[name] + logarithm * of_one[name] for name in NAMES[:3]}
     return values
 

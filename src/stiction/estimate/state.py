@@ -10,7 +10,7 @@ Flooded flats of the area A would hold a stopper with the force :math:`p A`.
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import ClassVar
 
 from stiction.constants import GAS_CONSTANT, WATER_MOLECULE, molar_volume, surface_energy
@@ -76,9 +76,15 @@ def curvature(heights: Heights) -> float:
     return math.sqrt(fourth / second)
 
 
-def _of_contact(heights, water, modulus):
-    """Coordinates of the contact of surfaces in a film."""
+def _of_contact(state):
+    """Coordinates of the contact of surfaces in a film, of solids as stiff beside its water as polysilicon.
+
+    Only of these were they learnt: rms, film and spectrum give their tension. What stiffness changes is learnt beside
+    it. ASSUME: on summits alone. At 2.5 times the stiffness, full contact changes tips by a ratio of 1.02 ± 0.02 more.
+    """
+    heights, water = state.heights, state.film
     low, second, fourth = heights.moments
+    modulus = state.modulus / state.beside_water.stiffness
     return (
         math.log(heights.rms / water.height),
         math.log(_tension(water) / (modulus * heights.slope)),
@@ -102,11 +108,6 @@ class TipState:
     names: ClassVar[tuple[str, ...]] = COORDINATES
 
     @property
-    def as_polysilicon(self) -> "TipState":
-        """State with solids as stiff beside the water as polysilicon."""
-        return replace(self, modulus=self.modulus / self.beside_water.stiffness)
-
-    @property
     def flooded_slope(self) -> float:
         """θ₀, up to which flooded flats hold a tip [-]."""
         return (13.5 * self.film.energy / self.stiffness) ** 0.25
@@ -116,7 +117,7 @@ class TipState:
         """Numbers on which the slope of a stuck tip depends, by ``COORDINATES``, logarithms but for heights' form."""
         summits = curvature(self.heights)
         return (
-            *_of_contact(self.heights, self.film, self.modulus),
+            *_of_contact(self),
             math.log(self.flooded_slope / self.heights.slope),
             math.log(self.width * summits),
             math.log(self.film.height),
@@ -136,11 +137,6 @@ class PatchState:
     names: ClassVar[tuple[str, ...]] = OF_PATCHES
 
     @property
-    def as_polysilicon(self) -> "PatchState":
-        """State with solids as stiff beside the water as polysilicon."""
-        return replace(self, modulus=self.modulus / self.beside_water.stiffness)
-
-    @property
     def flooded_force(self) -> float:
         """Force p A with which flooded flats hold [N]."""
         return _tension(self.film) * self.area
@@ -150,7 +146,7 @@ class PatchState:
         """Numbers on which the pull-off force depends, by ``OF_PATCHES``, as those of `TipState`."""
         summits = curvature(self.heights)
         return (
-            *_of_contact(self.heights, self.film, self.modulus),
+            *_of_contact(self),
             math.log(self.area * summits**2),
             math.log(self.film.height),
             math.log(summits),

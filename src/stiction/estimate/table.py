@@ -56,7 +56,7 @@ class Surrogate:
 
 def processes(section: Mapping[str, Any], *names: str) -> tuple[Surrogate, ...]:
     """Processes of a part of the table by name, then its changes on other solids."""
-    return tuple(Surrogate(**section[name]) for name in (*names, *(name for name in CHANGES if name in section)))
+    return tuple(Surrogate(**section[name]) for name in (*names, *CHANGES))
 
 
 @dataclass(frozen=True)

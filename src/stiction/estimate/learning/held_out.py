@@ -83,9 +83,9 @@ _OF_SOLIDS = (
 )
 _OTHER_BRIDGES = (
     "Three changes of other solids are learnt: by their attraction through water, by that through air, and by their "
-    "stiffness, each beside that of the water. Of bridges the last is not: intervals are wider by the larger of both "
-    "factors, and no such bridge was tested in full contact. In dry air other moduli are exactly similar, and "
-    "intervals are those above."
+    "stiffness, each beside that of the water. Intervals of bridges of other solids are wider by the larger of both "
+    "factors. No such bridge was tested in full contact. In dry air other moduli are exactly similar, and intervals "
+    "are those above."
 )
 _BRIDGES_IN_DRY_AIR = (
     "Lengths of bridges in dry air, by the closed form with the pull-off pressure of the estimate of stoppers. A "

@@ -5,7 +5,7 @@ python -m stiction.estimate.learning.make FOLDER
 
 import json
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -29,7 +29,7 @@ from stiction.estimate.learning.design import SIDES as SIDES_OF_PATCHES
 from stiction.estimate.learning.errors import Tested, conformal, rest_of, scores, tested, tested_bridges, tested_forces
 from stiction.estimate.learning.fit import Fitted, everywhere, fitted, group, rounded
 from stiction.estimate.learning.other_solids import rows as of_solids
-from stiction.estimate.learning.other_solids.ratios import ALL, WITH_BRIDGES, LearntRatio
+from stiction.estimate.learning.other_solids.ratios import ALL
 from stiction.estimate.learning.other_solids.rows import RowsOfRatio
 from stiction.estimate.learning.rows import (
     OF_FULL,
@@ -71,7 +71,7 @@ def table_of(folder: Path) -> dict[str, Any]:
         "coordinates": COORDINATES,
         "tips": tips.content,
         "full": full.content,
-        **changes_of(of_solids.rows_of_tips, folder, modulus, ALL),
+        **changes_of(of_solids.rows_of_tips, folder, modulus),
         "stoppers": stoppers_of(folder, modulus),
         "bridges": bridges_of(folder, modulus),
         "dry": in_dry_air(folder, modulus),
@@ -114,13 +114,11 @@ def bridges_in_dry_air(folder: Path, modulus: float, *of_patches: Fitted) -> dic
     return section | errors_of(dry_rows.tested_bridges, folder, modulus, middle, *of_patches)
 
 
-def changes_of(
-    rows_of: Callable[..., RowsOfRatio], folder: Path, modulus: float, ratios: Sequence[LearntRatio]
-) -> dict[str, Any]:
-    """Processes of the changes of lengths or forces by the first ratios of other solids."""
-    learnt = (rows_of(folder, modulus, ratio) for ratio in ratios)
+def changes_of(rows_of: Callable[..., RowsOfRatio], folder: Path, modulus: float) -> dict[str, Any]:
+    """Processes of the changes of lengths or forces by the ratios of other solids."""
+    learnt = (rows_of(folder, modulus, ratio) for ratio in ALL)
     changes = (fitted(each.rows, "at_2", each.columns, 90).content for each in learnt)
-    return dict(zip(CHANGES, changes, strict=False))
+    return dict(zip(CHANGES, changes, strict=True))
 
 
 def stoppers_of(folder: Path, modulus: float) -> dict[str, Any]:
@@ -128,7 +126,7 @@ def stoppers_of(folder: Path, modulus: float) -> dict[str, Any]:
     forces = fitted(rows_of_patches(folder, "learn", modulus), "at_2", range(len(OF_PATCHES)))
     full = fitted(rows_of_ratios(folder, "learn", modulus), "ratio", OF_RATIO, 90)
     section = {"sides": SIDES_OF_PATCHES, "coordinates": OF_PATCHES, "forces": forces.content, "full": full.content}
-    section |= changes_of(of_solids.rows_of_patches, folder, modulus, ALL)
+    section |= changes_of(of_solids.rows_of_patches, folder, modulus)
     return section | errors_of(tested_forces, folder, modulus, forces, full)
 
 
@@ -143,7 +141,7 @@ def bridges_of(folder: Path, modulus: float) -> dict[str, Any]:
         "middle": middle.content,
         "full": full.content,
     }
-    section |= changes_of(of_solids.rows_of_bridges, folder, modulus, WITH_BRIDGES)
+    section |= changes_of(of_solids.rows_of_bridges, folder, modulus)
     return section | errors_of(tested_bridges, folder, modulus, middle, full)
 
 

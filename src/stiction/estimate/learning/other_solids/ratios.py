@@ -44,9 +44,10 @@ class LearntRatio:
     bridges: int  #: of these, some of which have bridges
 
     @property
-    def number(self) -> int:
-        """Number of the ratios that differ from polysilicon's."""
-        return 1 + (self.before.number if self.before else 0)
+    def numbers(self) -> tuple[int, ...]:
+        """Numbers of the ratios that differ from polysilicon's, its own last."""
+        before = self.before.numbers if self.before else ()
+        return (*before, list(vars(OF_POLYSILICON)).index(self.name))
 
     @property
     def sets(self) -> dict[str, TrainingEffort]:
@@ -70,13 +71,10 @@ class LearntRatio:
 THROUGH_WATER = LearntRatio("through_water", (0.04, 8.0), "attraction", None, 32, 28)
 #: Solids of the combining relation have 1.4 to 2.7: polysilicon has less, contact angles and unlike sides add.
 THROUGH_AIR = LearntRatio("through_air", (0.5, 4.0), "attraction_through_air", THROUGH_WATER, 24, 16)
-#: From 60 GPa to 400 GPa on sides of which water has a contact angle of 80°. ASSUME: bridges depend on it by their
-#: coordinates alone.
-STIFFNESS = LearntRatio("stiffness", (0.3, 12.0), "stiffness", THROUGH_AIR, 24, 0)
+#: From 60 GPa to 400 GPa on sides of which water has a contact angle of 80°.
+STIFFNESS = LearntRatio("stiffness", (0.3, 12.0), "stiffness", THROUGH_AIR, 24, 16)
 #: All, each after that beside whose points its points are.
 ALL = (THROUGH_WATER, THROUGH_AIR, STIFFNESS)
-#: Those of which bridges are learnt.
-WITH_BRIDGES = tuple(ratio for ratio in ALL if ratio.bridges)
 
 
 def material_of(ratios: BesideWater) -> dict[str, Any]:
@@ -117,6 +115,15 @@ def computed(point: Point, name: str, valid: dict[str, Any], ratio: LearntRatio)
     return _stored(ratios) | {"slopes": slopes, "forces": forces.astype(np.float32)}
 
 
+def as_stiff(sizes: np.ndarray, stiffness: float) -> np.ndarray:
+    """Thickness t, gap and stress of bridges (airs, 3) on stiffer solids, as stiff as those of some sizes.
+
+    With :math:`E t^3` and the force of the stress, σ t, all their coordinates stay.
+    """
+    thinner = stiffness ** (-1 / 3)
+    return sizes * np.array([thinner, 1, 1 / thinner])
+
+
 def computed_bridges(point: Point, name: str, valid: dict[str, Any], ratio: LearntRatio) -> dict[str, Any]:
     """Lengths that the middle of the bridges of one point of a set holds."""
     effort, of_polysilicon = ratio.of_bridges[name], training.SETS[name]
@@ -125,7 +132,7 @@ def computed_bridges(point: Point, name: str, valid: dict[str, Any], ratio: Lear
     airs = states(of_polysilicon.states, point.number, effort.seed)[:AIRS]
     plan = with_materials(bridges.plan_of(point, valid), material, material)
     strips = bridges.TrainingStrips.of(point, plan, bridges.STRIPS, effort.seed)
-    each = zip(airs[:, 0], bridges.sizes_of(point, name), strict=False)
+    each = zip(airs[:, 0], as_stiff(bridges.sizes_of(point, name), ratios.stiffness), strict=False)
     lengths = np.array([strips.lengths(height, size, effort.patches) for height, size in each])
     return _stored(ratios) | {"lengths": lengths.astype(np.float32)}
 

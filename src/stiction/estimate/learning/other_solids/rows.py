@@ -59,7 +59,7 @@ class _Changed:
     of_polysilicon: dict[str, Any]
     numbers: dict[str, Any]
     before: dict[str, Any]
-    logarithms: tuple[float, ...]  #: of the ratios, its own is the last
+    logarithms: tuple[float, ...]  #: of all ratios
 
     def each(self, name):
         """Numbers of a name in each air, with those without the ratio."""
@@ -74,8 +74,7 @@ def _changed(folder, ratio, place, part=""):
             number = next(each.number for each in sets[name].all if each.sides == point.sides)
             before = folder / ratio.before.folder / part if ratio.before else folder / place
             of_both = [_loaded(each / name / f"{number:04}.npz") for each in (folder / place, before)]
-            logarithms = stored_ratios(numbers).logarithms[: ratio.number]
-            yield _Changed(point, of_both[0], numbers, of_both[1], logarithms)
+            yield _Changed(point, of_both[0], numbers, of_both[1], stored_ratios(numbers).logarithms)
 
 
 def _loaded(path):
@@ -84,14 +83,14 @@ def _loaded(path):
         return dict(file)
 
 
-def _rows(entries, columns, names):
-    """Rows of the change of quantities by the logarithm of the last ratio, from both at each state."""
+def _rows(entries, ratio, columns, names):
+    """Rows of the change of quantities by the logarithm of a ratio, from both at each state."""
     surface, coordinates, changed, before, logarithms = zip(*entries, strict=True)
     logarithms = np.array(logarithms)
-    by, pairs = logarithms[:, -1], list(zip(changed, before, strict=True))
+    by, pairs = logarithms[:, ratio.numbers[-1]], list(zip(changed, before, strict=True))
     values = {name: np.array([more[name] - less[name] for more, less in pairs]) / by for name in NAMES[:3]}
     rows = DesignRows(np.column_stack([coordinates, logarithms]), values, np.array(surface), 1 / np.abs(by))
-    return RowsOfRatio(rows, (*columns, *range(len(names), len(names) + logarithms.shape[1])))
+    return RowsOfRatio(rows, (*columns, *(len(names) + number for number in ratio.numbers)))
 
 
 def rows_of_tips(folder: Path, modulus: float, ratio: LearntRatio) -> RowsOfRatio:
@@ -107,7 +106,7 @@ def rows_of_tips(folder: Path, modulus: float, ratio: LearntRatio) -> RowsOfRati
         )
         for state, *both in zip(states, *of_air, strict=True)
     )
-    return _rows(entries, *_OF_TIPS)
+    return _rows(entries, ratio, *_OF_TIPS)
 
 
 def rows_of_patches(folder: Path, modulus: float, ratio: LearntRatio) -> RowsOfRatio:
@@ -117,7 +116,7 @@ def rows_of_patches(folder: Path, modulus: float, ratio: LearntRatio) -> RowsOfR
         for one in _changed(folder, ratio, patches.FOLDER)
         for patch, both in zip(patches_of(one.point, one.of_polysilicon, modulus), one.each("forces"), strict=False)
     )
-    return _rows(entries, *_OF_PATCHES)
+    return _rows(entries, ratio, *_OF_PATCHES)
 
 
 def rows_of_bridges(folder: Path, modulus: float, ratio: LearntRatio) -> RowsOfRatio:
@@ -128,7 +127,7 @@ def rows_of_bridges(folder: Path, modulus: float, ratio: LearntRatio) -> RowsOfR
         for bridge, both in zip(bridges_of(one.point, one.of_polysilicon, modulus), one.each("lengths"), strict=False)
         if are_known(np.array(both)).all()
     )
-    return _rows(entries, *_OF_BRIDGES)
+    return _rows(entries, ratio, *_OF_BRIDGES)
 
 
 def solids_of(point: Point, name: str) -> tuple[SolidPair, float]:
