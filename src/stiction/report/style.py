@@ -259,7 +259,8 @@ def legend_outside(figure: Figure, shown: tuple[Sequence[Artist], Sequence[str]]
 
 def _fitting(width, labels):
     """Number of columns of a legend with some labels that fit into a width [in], at least one."""
-    em, longest = rcParams["legend.fontsize"] / _POINTS, max(map(len, labels), default=0)
+    lines = (line for label in labels for line in label.splitlines())
+    em, longest = rcParams["legend.fontsize"] / _POINTS, max(map(len, lines), default=0)
     return max(1, int(width / (em * (_CHARACTER * longest + _HANDLE))))
 
 

@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 from noted import noted
 from numpy.testing import assert_allclose
 
-from stiction.answer.data import Between
+from stiction.answer.data import Between, Unasked
 from stiction.config.files import load
 from stiction.contact.correction import Correction, ElasticChange
 from stiction.contact.environment import Water
@@ -19,8 +19,9 @@ from stiction.plan.plan import Plan
 from stiction.report.budget import figures as figures_budget
 from stiction.report.budget import tables as tables_budget
 from stiction.report.format import safe_size
-from stiction.report.style import DOUBLE, humidity_colours, legend_below, panels, save, styled
+from stiction.report.style import BUILD, DOUBLE, humidity_colours, legend_below, panels, save, styled
 from stiction.stages.devices.stoppers import Settings, layout, stuck_over
+from stiction.stages.life.answers import Name
 
 WARNINGS = {"S1": [], "S2": [noted("Beware.")]}
 
@@ -377,10 +378,26 @@ def test_a_stopper_shows_the_larger_force_to_build_between_its_airs(is_allowed):
     answer = replace(
         known, between=Between(0.6, 1.5 * known.build, known.build), forbidden=() if is_allowed else ("gap",)
     )
-    panel = figures_budget.stoppers({"S1": STOPPERS["S1"]}, {}, {"S1": answer}).axes[1]
+    shares, panel = figures_budget.stoppers({"S1": STOPPERS["S1"]}, {}, {"S1": answer}).axes
     label = f"between them, interpolated, RH 0.6: {safe_size(1.5 * known.build, known.sought)}"
     marks = [line.get_xydata() for line in panel.lines if line.get_label() == label]
     assert_allclose(marks, [[[0.6, 1.5e6 * known.build]]] if is_allowed else [])
+    label = f"stricter: {safe_size(1.5 * known.build, known.sought)}"
+    lines = [line.get_xdata()[0] for line in shares.lines if line.get_label() == label]
+    assert_allclose(lines, [1.5e6 * known.build] if is_allowed else [])
+
+
+def test_a_stopper_shows_all_forces_that_are_stricter_and_no_others():
+    known = stopper_answer(STOPPERS["S1"], BUDGETS)
+    less, more = (Unasked(Name.FAST, "", factor * known.build) for factor in (0.8, 1.2))
+    answer = replace(known, between=Between(0.6, 1.5 * known.build, known.build), unasked=(less, more))
+    above, below = figures_budget.stoppers({"S1": STOPPERS["S1"]}, {}, {"S1": answer}).axes
+    lines = [line.get_xdata()[0] for line in above.lines if line.get_linestyle() == "--" and line.get_color() == BUILD]
+    assert_allclose(lines, [1.2e6 * known.build, 1.5e6 * known.build])
+    first, second = (safe_size(factor * known.build, known.sought) for factor in (1.2, 1.5))
+    assert f"stricter: {first}, {second}" in [text.get_text() for text in above.get_legend().get_texts()]
+    to_build = f"to build for all stated airs, {safe_size(known.build, known.sought)}, but {first} if it separates fast"
+    assert to_build in [" ".join(text.get_text().split()) for text in below.get_legend().get_texts()]
 
 
 def test_the_largest_limit_of_a_stopper_is_marked_where_the_table_has_it():

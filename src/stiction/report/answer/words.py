@@ -1,6 +1,6 @@
 """Answer about a device in words. No decision is made here: `stiction.answer.data.Answer` has them."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -158,8 +158,13 @@ def headline(answer: Answer) -> str:
 
 def to_build(answer: Answer) -> str:
     """Size to build, and the stricter ones beside it."""
-    size, beside = safe_size(answer.build, answer.sought), stricter(answer)
-    return f"{size}, but {listed(beside)}" if beside else size
+    return to_build_beside(answer, stricter(answer))
+
+
+def to_build_beside(answer: Answer, sizes: Sequence[str]) -> str:
+    """Size to build, and some stricter sizes in words."""
+    size = safe_size(answer.build, answer.sought)
+    return f"{size}, but {listed(sizes)}" if sizes else size
 
 
 def stricter(answer: Answer) -> list[str]:

@@ -165,9 +165,11 @@ def adhesion_energies(pairs: Mapping[str, tuple], published: pd.DataFrame, flat:
 def _legend_above(figure, axes):
     """Legend of all panels, with as many columns as fit across the figure."""
     entries, labels = handles(*axes.flat)
+    notes = ["beams left of RH, published right"]
     if any(text.get_text().endswith("%") for panel in axes.flat for text in panel.texts):
-        entries.append(Line2D([], [], linestyle=""))
-        labels.append("58 %: share of S-shapes, if not all")
+        notes += ["58 %: share of S-shapes, if not all", "small marks: no S-shape"]
+    entries += [Line2D([], [], linestyle="") for _ in notes]
+    labels += notes
     style = {"loc": "outside upper center", "columnspacing": 1.2}
     for columns in (5, 4, 3, 2, 1):
         legend = figure.legend(entries, labels, ncols=columns, **style)

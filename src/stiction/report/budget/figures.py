@@ -16,7 +16,7 @@ from stiction.devices.risk import one_in
 from stiction.devices.stoppers import stuck_patches
 from stiction.plan.names import by_name
 from stiction.report.answer.tables import of_datasets
-from stiction.report.answer.words import is_forbidden
+from stiction.report.answer.words import is_forbidden, to_build_beside, unasked
 from stiction.report.budget.tables import choice_label, response_text
 from stiction.report.format import TO_UN, number, safe_size
 from stiction.report.limits import words
@@ -44,6 +44,8 @@ from stiction.stages.devices import device_warnings
 from stiction.stages.devices.budget import budget_of, budgets_of, groups_of, slope_errors_of
 from stiction.stages.devices.stoppers import bounded_share, stuck_over
 
+#: Longest line of a label [characters].
+_WIDE = 42
 #: Colours of pull-off forces and of their limit.
 _COLOUR, _LIMIT = "#0072B2", "#AA3377"
 #: Number of quantiles, and of forces between the ends, at which the band of a stopper is computed.
@@ -112,11 +114,21 @@ def _stuck_over_force(panel, dataset, answer):
     if answer is not None:
         label = f"to build, {safe_size(answer.build, answer.sought)}"
         panel.axvline(TO_UN * answer.build, color=BUILD, linewidth=1.2, label=label)
+        _lines_of_stricter_forces(panel, answer)
     panel.axvline(restoring, color="0.4", linestyle=":", linewidth=0.8)
     panel.set(yscale="log", xlim=(0, None), ylim=(lowest, 1.3))
     if np.isfinite(restoring):
         _name_restoring_force(panel, restoring)
     legend_below(panel, [*handles(panel)[0], Patch(color="0.3", alpha=0.2, linewidth=0, label="95 % band")])
+
+
+def _lines_of_stricter_forces(panel, answer):
+    """Lines of the forces beside that to build that are stricter, which the panel below explains, under one label."""
+    beside = [limit.size for limit in (answer.between, *answer.unasked) if limit]
+    sizes = sorted(size for size in beside if answer.sought.is_stricter(size, answer.build))
+    label = f"stricter: {', '.join(safe_size(size, answer.sought) for size in sizes)}"
+    for k, size in enumerate(sizes):
+        panel.axvline(TO_UN * size, color=BUILD, linewidth=1, linestyle="--", label="_" if k else label)
 
 
 def _forces_of_band(dataset, forces, limits):
@@ -180,7 +192,8 @@ def _forces_to_build(panel, placed, answer):
 
     Other stated airs alone would need less.
     """
-    label, air = f"to build for all stated airs, {safe_size(answer.build, answer.sought)}", answer.together.humidity
+    words, air = to_build_beside(answer, unasked(answer)), answer.together.humidity
+    label = textwrap.fill(f"to build for all stated airs, {words}", _WIDE)
     entries = panel.plot(placed.get(air, air), TO_UN * answer.build, "D", color=BUILD, markersize=4, label=label)
     if between := answer.between:
         label = f"between them, interpolated, RH {between.humidity:.2g}: {safe_size(between.size, answer.sought)}"
