@@ -244,7 +244,10 @@ OF_STOPPER = ["--rms=3", "--like=B2", "--rh=0.6", "--contact", "3", "2", "--forc
 WITH_VOLTAGE = [*OPTIONS, "--voltage=5", "--dielectric", "100", "3.9", "--skewness=-0.5", "--kurtosis=4"]
 
 
-@pytest.mark.parametrize("words", [OPTIONS, OF_BRIDGE, OF_STOPPER, WITH_VOLTAGE])
+PULLED, DRIVEN = ([*words, "--voltage=20", "--dielectric", "100", "3.9"] for words in (OF_STOPPER, OF_BRIDGE))
+
+
+@pytest.mark.parametrize("words", [OPTIONS, OF_BRIDGE, OF_STOPPER, WITH_VOLTAGE, PULLED, DRIVEN])
 def test_the_printed_file_is_valid_and_has_the_same_estimate(tmp_path, capsys, words):
     lines = said(capsys, *words)[1]
     (tmp_path / "mine.yaml").write_text("\n".join(lines[lines.index("run: {pairs: [mine], studies: []}") :]))
@@ -264,6 +267,11 @@ def test_a_stress_makes_a_bridge_and_more_of_it_lets_it_be_longer(capsys):
         "  Mine: {kind: bridge, pair: mine, thickness_um: 2.0, gap_um: 2.0, width_um: 30.0, residual_stress_MPa: 50.0,"
         in (of_file[-1][: len(of_file[-1])])
     )
+
+
+def test_a_voltage_asks_for_more_force(capsys):
+    bare, driven = (lengths(said(capsys, *words)[1])[1000] for words in (OF_STOPPER, PULLED))
+    assert driven[0] == pytest.approx(bare[0] + 16.2, abs=0.15)  # ε₀ V² A / 2 D², and three digits
 
 
 def test_no_file_is_printed_for_a_stopper_without_a_force_which_a_run_would_refuse(capsys):
@@ -387,12 +395,12 @@ def test_a_file_takes_no_options_and_must_have_devices(tmp_path, capsys):
 @pytest.mark.parametrize(
     ("words", "reason"),
     [
-        (["--contact", "3", "3", "--voltage=5"], "--voltage is for cantilevers alone"),
+        (["--contact", "3", "3", "--voltage=5"], "--dielectric is missing"),
         (["--contact", "3", "3", "--thickness=2"], "--thickness is for beams alone"),
         (["--contact", "3", "3", "--stress=2"], "--stress is for bridges alone"),
         (["--thickness=2", "--gap=20", "--force=5"], "--force is for stoppers alone"),
         (["--thickness=2", "--gap=2", "--stress=50", "--force=5"], "--force is for stoppers alone"),
-        (["--thickness=2", "--gap=2", "--stress=50", "--voltage=5"], "--voltage is for cantilevers alone"),
+        (["--thickness=2", "--gap=2", "--stress=50", "--voltage=5"], "--dielectric is missing"),
         (["--thickness=2", "--gap=2", "--stress=-5"], "--stress must be 0 or above, got -5.0"),
     ],
 )

@@ -38,6 +38,7 @@ CASES = [
     ),
     (limits.flat_patches, (0.024,), "2.4 % of the patches.*safe side", (0.0,)),
     (limits.smooth_pair, (1.014 * NM, [0.5, 0.9]), "1 nm rms.* 24 ± 1 % at RH 0.9", (3.4 * NM, [0.9])),
+    (limits.smooth_pair, (0.528 * NM, [0.97]), "0.53 nm rms.* 38 ± 6 % at RH 0.97", (3.4 * NM, [0.97])),
     (limits.unknown_full_contact, ([0.5],), "takes too long, at a relative humidity of 0.5.* by up to 51 %", ([],)),
     (limits.few_strips, (0.45,), "45 % of the squared error", (0.3,)),
     (limits.few_strips, (0.45,), "hardly known", (np.nan,)),

@@ -153,7 +153,7 @@ def test_a_spring_has_the_force_of_its_gap():
         ({"contact_um": [0.5, 3]}, "from 1 to 6 µm"),
         ({"restoring_force_uN": 0}, "restoring_force_uN must be above 0, got 0"),
         ({"tilt_deg": [0.1]}, "tilt_deg"),
-        ({"voltage_V": 3}, "voltage_V"),
+        ({"voltage_V": 3}, "its file is not complete, at 'dielectric'"),
         ({"humidities": [0.999]}, "beyond what was learnt"),
         ({"kind": "probe", "radius_um": 5}, "only cantilevers, bridges and stoppers"),
     ],

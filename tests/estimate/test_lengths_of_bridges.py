@@ -365,7 +365,7 @@ def test_the_fraction_at_a_length_is_that_of_its_row_after_all_touchdowns():
         ({"residual_stress_MPa": -5}, "residual_stress_MPa must be 0 or above, got -5"),
         ({"residual_stress_MPa": float("nan")}, "residual_stress_MPa must be 0 or above, got nan"),
         ({"gap_um": 0}, "gap_um must be above 0, got 0"),
-        ({"voltage_V": 3}, "voltage_V was not learnt"),
+        ({"voltage_V": 3}, "its file is not complete, at 'dielectric'"),
         ({"dimples": {}}, "dimples was not learnt"),
         ({"strip_um": 0.4}, "strip_um was not learnt"),
         ({"humidities": [0.0]}, "dry"),

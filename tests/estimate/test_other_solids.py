@@ -17,15 +17,17 @@ from stiction.contact.materials import Solid
 from stiction.contact.solids import composite_modulus, hamaker_constant
 from stiction.estimate import question as asking
 from stiction.estimate.answer import CONFIDENCES, MARGINS, OF_OTHER_SOLIDS, answer
+from stiction.estimate.bridge import COORDINATES as OF_BRIDGES
 from stiction.estimate.bridge import MiddleState
 from stiction.estimate.force import reciprocals
+from stiction.estimate.learning import bridges, make, patches, training
 from stiction.estimate.learning import errors as of_estimates
-from stiction.estimate.learning import make, patches, training
-from stiction.estimate.learning.other_solids import attraction, points, rows
+from stiction.estimate.learning.other_solids import points, ratios, rows
+from stiction.estimate.learning.other_solids.ratios import ALL, material_of
 from stiction.estimate.learning.rows import states_of
-from stiction.estimate.length import Impossible, NotLearnt, lengths, of_solids
+from stiction.estimate.length import Impossible, NotLearnt, lengths, on_solids
 from stiction.estimate.question import ENDS, OF_ATTRACTION, questions
-from stiction.estimate.solids import SolidPair
+from stiction.estimate.solids import OF_POLYSILICON, OF_WATER, BesideWater, SolidPair, following
 from stiction.estimate.state import COORDINATES, OF_PATCHES, Film, PatchState, TipState, film
 from stiction.estimate.statistics import of_pair
 from stiction.estimate.table import Surrogate, content, known
@@ -93,7 +95,8 @@ def test_two_bodies_are_combined_as_in_a_run(first, second):
 
 def test_what_is_not_stated_is_exactly_polysilicon_that_water_wets():
     assert SolidPair.of({}, {}) == SolidPair()
-    assert SolidPair().attraction(film(0.7, 300.0, 2.0).energy) == 1.0
+    assert SolidPair().beside_water(film(0.7, 300.0, 2.0).energy) == OF_POLYSILICON
+    assert OF_POLYSILICON.logarithms == (0.0, 0.0, 0.0)
     assert Solid().young_modulus == SolidPair().modulus == content()["modulus"]
     assert paper()["solid"]["poisson_ratio"] == Solid().poisson_ratio
     assert dict(Solid().hamaker_constant) == {"water": SolidPair().through_water, "dry": SolidPair().in_dry_air}
@@ -105,9 +108,36 @@ def test_a_state_of_the_same_numbers_is_the_same(factor):
     stronger = Film(WATER.height, factor * WATER.energy)
     tip = replace(TIP, film=stronger, stiffness=factor * TIP.stiffness, modulus=factor * TIP.modulus)
     np.testing.assert_allclose(tip.coordinates, TIP.coordinates, rtol=1e-12)
-    solids = SolidPair(through_water=factor * SolidPair().through_water)
-    assert solids.attraction(stronger.energy) == pytest.approx(1.0)
-    assert SolidPair().attraction(stronger.energy) == pytest.approx(1 / factor), "the control: water alone"
+    own = SolidPair()
+    solids = SolidPair(
+        modulus=factor * own.modulus,
+        through_water=factor * own.through_water,
+        in_dry_air=factor * own.in_dry_air,
+    )
+    assert solids.beside_water(stronger.energy).logarithms == pytest.approx((0, 0, 0), abs=1e-12)
+    control = own.beside_water(stronger.energy)
+    assert control.through_water == pytest.approx(1 / factor), "the control: water alone"
+    combined = ((math.sqrt(97.5 / factor) + math.sqrt(37)) / (math.sqrt(97.5) + math.sqrt(37))) ** 2
+    assert control.through_air * combined == pytest.approx(1 / factor)
+    assert control.stiffness == pytest.approx(1 / factor)
+
+
+@given(st.floats(1e-21, 5e-19), st.floats(1e-21, 5e-19))
+def test_attraction_through_air_that_follows_is_that_of_the_combining_relation(first, second):
+    """Of constants in vacuum, the root of that through a medium is the difference of the roots, that in air none."""
+
+    def through_water(in_air):
+        """Constant through water of two bodies of a constant in air."""
+        return (math.sqrt(in_air) - math.sqrt(OF_WATER)) ** 2
+
+    of_air = sorted(OF_WATER + each for each in (first, second))
+    for in_air in of_air:
+        assert following(through_water(in_air)) == pytest.approx(in_air, rel=1e-6)
+    one, other = (SolidPair(through_water=through_water(each), in_dry_air=each).beside_water(0.144) for each in of_air)
+    assert one.through_air == pytest.approx(other.through_air, rel=1e-6), "all that follow have the same"
+    more = SolidPair(through_water=through_water(of_air[0]), in_dry_air=2 * of_air[0]).beside_water(0.144)
+    assert more.through_air == pytest.approx(2 * one.through_air)
+    assert more.through_water == one.through_water
 
 
 def pressures_of(modulus=164, ratio=1.0, humidity=0.6, temperature=300.0, angle=0.0):
@@ -133,14 +163,45 @@ def test_contacts_of_a_run_have_the_similarity():
 def test_stronger_attraction_shortens_by_what_was_learnt_for_each_logarithm():
     change = process_of(at_0=-0.1, at_1=-0.2, at_2=-0.3)
     own = lengths(TIP, 1.0, falling(0.9), None, change)
-    strong = lengths(replace(TIP, attraction=math.e), 1.0, falling(0.9), None, change)
+    strong = lengths(replace(TIP, beside_water=BesideWater(math.e)), 1.0, falling(0.9), None, change)
     for score, by in ((0.0, 0.1), (-1.0, 0.2), (-2.0, 0.3)):
         assert strong.at(score) == pytest.approx(own.at(score) * math.exp(-by))
-    weak = lengths(replace(TIP, attraction=math.exp(-0.5)), 1.0, falling(0.9), None, change)
+    weak = lengths(replace(TIP, beside_water=BesideWater(math.exp(-0.5))), 1.0, falling(0.9), None, change)
     assert weak.at(-1.0) == pytest.approx(own.at(-1.0) * math.exp(0.1))
+    in_air = replace(TIP, beside_water=BesideWater(1.0, math.e))
+    assert lengths(in_air, 1.0, falling(0.9), None, change).at(-1.0) == own.at(-1.0), "the control: it is not learnt"
+    assert lengths(in_air, 1.0, falling(0.9), None, change, change).at(-1.0) == pytest.approx(strong.at(-1.0))
+    both = lengths(
+        replace(TIP, beside_water=BesideWater(math.e, math.exp(-0.5))), 1.0, falling(0.9), None, change, change
+    )
+    assert both.at(-1.0) == pytest.approx(own.at(-1.0) * math.exp(-0.1))
     forces = falling(1.5), process_of(ratio=0.0, power=1.0), change
-    more = reciprocals(replace(PATCH, attraction=math.e), *forces)
+    more = reciprocals(replace(PATCH, beside_water=BesideWater(math.e)), *forces)
     assert more.at(0.0) == pytest.approx(reciprocals(PATCH, *forces).at(0.0) * math.exp(-0.1))
+
+
+def test_stiffer_solids_are_those_of_polysilicon_and_what_was_learnt_for_its_logarithm():
+    """Not a state of polysilicon's water with another modulus, of which nothing was learnt."""
+    nothing = process_of(at_0=0.0, at_1=0.0, at_2=0.0)
+    change = process_of(at_0=0.1, at_1=0.1, at_2=0.1)
+    softness = 1
+    steep = Surrogate([softness], [0.0], [1.0], [1.0], [[0.0]], *slopes_of(0.5), [-9.0], [9.0], math.inf)
+    stiff = replace(TIP, modulus=4 * TIP.modulus, beside_water=BesideWater(stiffness=4.0))
+    own = lengths(TIP, 1.0, steep, None)
+    assert lengths(stiff, 1.0, steep, None).at(-1.0) == pytest.approx(own.at(-1.0), rel=1e-12)
+    learnt = lengths(stiff, 1.0, steep, None, nothing, nothing, change)
+    assert learnt.at(-1.0) == pytest.approx(own.at(-1.0) * 4**0.1)
+    control = lengths(replace(TIP, modulus=4 * TIP.modulus), 1.0, steep, None)
+    assert control.at(-1.0) == pytest.approx(own.at(-1.0) * 4**-0.5)
+    pad = replace(PATCH, modulus=4 * PATCH.modulus, beside_water=BesideWater(stiffness=4.0))
+    forces = steep, process_of(ratio=0.0, power=1.0), nothing, nothing, change
+    assert reciprocals(pad, *forces).at(0.0) == pytest.approx(reciprocals(PATCH, *forces).at(0.0) * 4**0.1)
+
+
+def slopes_of(slope):
+    """Trends of quantities that rise by a slope, and weights without effect."""
+    trend = {f"at_{k}": [2.0 - 0.1 * k, slope] for k in range(3)} | {"slope": [0.1, 0.0]}
+    return trend, dict.fromkeys(trend, [0.0])
 
 
 def test_lengths_of_bridges_change_by_what_was_learnt_and_moduli_act_in_their_places():
@@ -148,7 +209,7 @@ def test_lengths_of_bridges_change_by_what_was_learnt_and_moduli_act_in_their_pl
 
     state = MiddleState(HEIGHTS, WATER, 2e-6, 2e-6, 30e-6, 50e6, 164e9, 164e9)
     learnt = falling(0.5), process_of(shift=0.0, power=1.0), process_of(at_0=-0.1, at_1=-0.1, at_2=-0.1)
-    own, strong = (bridge.lengths(each, *learnt) for each in (state, replace(state, attraction=math.e)))
+    own, strong = (bridge.lengths(each, *learnt) for each in (state, replace(state, beside_water=BesideWater(math.e))))
     assert strong.at(-2.0) == pytest.approx(own.at(-2.0) * math.exp(-0.1))
     stiff = replace(state, modulus_in_contact=2 * 164e9).coordinates
     assert stiff[1] == pytest.approx(state.coordinates[1] - math.log(2))
@@ -156,11 +217,21 @@ def test_lengths_of_bridges_change_by_what_was_learnt_and_moduli_act_in_their_pl
 
 
 def test_attraction_beyond_what_was_learnt_is_refused_by_its_name():
-    process = Surrogate([10], [0.0], [1.0], [1.0], [[0.0]], {"at_0": [0.0, 0.0]}, {"at_0": [0.0]}, [-1.0], [1.0], 9.0)
-    values = {"at_0": 0.0, "at_1": 0.0, "at_2": 0.0}
+    quantities = (
+        {"at_0": [0.0, 0.0], "at_1": [0.0, 0.0], "at_2": [0.0, 0.0]},
+        dict.fromkeys(("at_0", "at_1", "at_2"), [0.0]),
+    )
+    process, in_air = (
+        Surrogate([column], [0.0], [1.0], [1.0], [[0.0]], *quantities, [-1.0], [1.0], 9.0) for column in (10, 11)
+    )
+    learnt = falling(0.0)
     with pytest.raises(NotLearnt, match="attraction of the solids beside that of the water .* is too large"):
-        of_solids(values, replace(TIP, attraction=9.0), process)
-    assert of_solids(values, TIP, process) is values
+        on_solids(learnt, replace(TIP, beside_water=BesideWater(9.0)), process, in_air)
+    with pytest.raises(
+        NotLearnt, match="attraction of the solids through air beside that through water .* is too small"
+    ):
+        on_solids(learnt, replace(TIP, beside_water=BesideWater(2.0, 0.1)), process, in_air)
+    assert on_solids(learnt, TIP, process, in_air) == learnt.at(()).of
 
 
 @pytest.mark.parametrize("device", [LEVER, BUMP, ARCH])
@@ -306,26 +377,83 @@ def test_constants_beyond_their_ends_are_refused():
 # Learning
 
 
-def test_ratios_of_points_are_within_their_range_and_each_its_own():
-    drawn = [attraction.ratio_of(point, 1) for point in attraction.SETS["learn_any"].all]
-    low, high = attraction.RATIOS
+@pytest.mark.parametrize("ratio", ALL, ids=lambda ratio: ratio.name)
+def test_ratios_of_points_are_within_their_range_and_each_its_own(ratio):
+    points_of_set = ratio.sets["learn_any"].all
+    drawn = [getattr(ratio.beside_water(point, 1), ratio.name) for point in points_of_set]
+    low, high = ratio.range
     assert low <= min(drawn) < max(drawn) <= high
     assert len(set(drawn)) == len(drawn)
     assert np.median(np.log(drawn)) == pytest.approx(0.5 * math.log(low * high), abs=0.9)
-    for name, effort in attraction.SETS.items():
+    for name, effort in ratio.sets.items():
         assert effort.all == training.SETS[name].all[: effort.points]
 
 
-@pytest.mark.parametrize("ratio", [0.05, 1.0, 4.0])
-def test_solids_of_another_attraction_follow_the_combining_relation(ratio):
-    plan = attraction.scaled(training.plan_of(POINT, training.base()), ratio)
-    water, dry = (plan.config["materials"]["OfS"]["hamaker_constant_zJ"][medium] for medium in ("water", "dry"))
-    assert 1e-21 * water == pytest.approx(ratio * HAMAKER_CONSTANT["water"])
-    (own_water, own_dry) = (1e21 * HAMAKER_CONSTANT[medium] for medium in ("water", "dry"))
-    root = math.sqrt(37)
-    expected = own_dry * ((math.sqrt(water) + root) / (math.sqrt(own_water) + root)) ** 2
-    assert dry == pytest.approx(expected)
-    assert plan.config["materials"]["OfT"] == plan.config["materials"]["OfS"]
+@pytest.mark.parametrize("ratio", ALL, ids=lambda ratio: ratio.name)
+def test_points_of_a_ratio_have_the_other_ratios_of_those_beside_which_they_are(ratio):
+    for mine, of_before in ((ratio.points, "points"), (ratio.bridges, "bridges")):
+        assert mine <= getattr(ratio.before or training.SETS["learn_any"], of_before, math.inf)
+    before = ratio.before.beside_water(POINT, 3) if ratio.before else OF_POLYSILICON
+    ratios, without = vars(ratio.beside_water(POINT, 3)), vars(before)
+    assert without[ratio.name] == 1.0 != ratios[ratio.name]
+    assert {name for name in ratios if ratios[name] != without[name]} == {ratio.name}
+
+
+def test_nothing_is_learnt_of_the_stiffness_on_polysilicon_alone():
+    """The tension of its water follows from film, rms and spectrum, until moduli differ."""
+
+    def least(moduli):
+        """Least scatter of any combination of the coordinates in their own scatters."""
+        states = [
+            PatchState(of_pair(each.sides), film(0.4 + 0.01 * k, 300.0, 2.0), 1e-12 * (1 + k % 7), modulus)
+            for k, (each, modulus) in enumerate(zip(training.SETS["check_any"].all, moduli, strict=True))
+        ]
+        coordinates = np.array([state.coordinates for state in states])
+        standard = (coordinates - coordinates.mean(axis=0)) / coordinates.std(axis=0)
+        return np.linalg.svd(standard, compute_uv=False).min() / math.sqrt(len(standard))
+
+    number = training.SETS["check_any"].points
+    assert least([164e9] * number) < 1e-9
+    assert least(np.exp(np.random.default_rng(1).uniform(24.8, 26.7, number))) > 0.1, "the control: other moduli"
+
+
+@given(st.floats(5e9, 5e11), st.floats(0.5, 2.0), st.floats(280, 360))
+def test_states_know_the_stiffness_of_solids_by_its_ratio_alone(modulus, wetting, temperature):
+    water = film(0.7, temperature, wetting)
+    pair = SolidPair(modulus=modulus, wetting=wetting)
+    stiff, own = pair.beside_water(water.energy), SolidPair(wetting=wetting).beside_water(water.energy)
+    for state, key in (
+        (TipState(HEIGHTS, water, 7000.0, 20e-6, modulus, stiff), "modulus"),
+        (PatchState(HEIGHTS, water, 9e-12, modulus, stiff), "modulus"),
+        (MiddleState(HEIGHTS, water, 2e-6, 2e-6, 30e-6, 50e6, 164e9, modulus, stiff), "modulus_in_contact"),
+    ):
+        of_polysilicon = replace(state, beside_water=own, **{key: 164e9})
+        np.testing.assert_allclose(state.coordinates, of_polysilicon.coordinates, rtol=1e-9)
+        control = replace(state, **{key: 2 * modulus}).coordinates
+        assert control[1] == pytest.approx(state.coordinates[1] - math.log(2))
+
+
+def test_bridges_of_stiffer_solids_are_thinner_so_that_their_coordinates_stay():
+    sizes = np.array([[2e-6, 1.5e-6, 50e6], [3e-6, 1e-6, 20e6]])
+    for (thickness, gap, stress), size in zip(ratios.as_stiff(sizes, 5.0), sizes.tolist(), strict=True):
+        own = MiddleState(HEIGHTS, WATER, size[0], size[1], 30e-6, size[2], 164e9, 164e9)
+        stiff = replace(own, thickness=thickness, gap=gap, stress=stress, modulus=5 * 164e9)
+        np.testing.assert_allclose(stiff.coordinates, own.coordinates, rtol=1e-12)
+        assert stiff.flooded_length == pytest.approx(own.flooded_length)
+        assert stiff.stretched.bare(2e-4) == pytest.approx(own.stretched.bare(2e-4))
+        assert replace(own, modulus=5 * 164e9).coordinates != pytest.approx(own.coordinates), "the control"
+
+
+@pytest.mark.parametrize("numbers", [(0.05, 1.0), (1.0, 1.0), (4.0, 1.0), (0.3, 2.0), (1.0, 1.0, 3.0), (0.3, 2.0, 0.4)])
+def test_materials_of_ratios_have_them_in_the_estimate(numbers):
+    beside = BesideWater(*numbers)
+    material = material_of(beside)
+    plan = training.with_materials(training.plan_of(POINT, training.base()), material, material)
+    water = training.water_of(plan).gaps.hamaker_constant["water"]
+    assert water == pytest.approx(beside.through_water * HAMAKER_CONSTANT["water"])
+    assert plan.config["materials"]["OfT"]["young_modulus_GPa"] == pytest.approx(164 * beside.stiffness)
+    found_ratios = SolidPair.of(material, material).beside_water(0.144)
+    assert found_ratios.logarithms == pytest.approx(beside.logarithms, abs=1e-9)
 
 
 def test_solids_of_points_are_within_their_ranges_and_each_its_own():
@@ -352,7 +480,9 @@ def test_seeds_of_tested_points_are_in_no_other_set():
 
 def test_a_plan_has_the_solids_and_the_stiffness_of_its_point():
     valid, (temperature, materials) = training.base(), points.drawn(POINT, 21)
-    plan = points.with_solids(training.plan_of(points.of_beam(POINT, materials, valid), valid), temperature, materials)
+    plan = points.with_solids(
+        training.plan_of(training.of_beam(POINT, materials[0], valid), valid), temperature, materials
+    )
     device = plan.config["devices"][training.DEVICE]
     modulus = 1e9 * materials[0]["young_modulus_GPa"]
     assert modulus * (1e-6 * device["thickness_um"]) ** 3 / (1e-6 * device["gap_um"]) ** 2 == pytest.approx(
@@ -365,33 +495,52 @@ def test_a_plan_has_the_solids_and_the_stiffness_of_its_point():
     assert water.film(humidity)[0] == pytest.approx(3e-9, rel=2e-3)
 
 
-def test_rows_of_the_attraction_have_the_change_of_their_own_contacts(monkeypatch, tmp_path):
-    airs, factor = np.array([[2e-9, 1.0], [5e-9, 1.0]]), 0.8
+def saved(folder, exponents):
+    """Files of one point at all ratios, of numbers that grow by powers of these. Returns its airs."""
+    airs, (point,), seed = np.array([[2e-9, 1.0], [5e-9, 1.0]]), *first_point()
     slopes = 0.05 * np.exp(0.1 * np.random.default_rng(1).normal(size=(2, 3, 400)))
     forces = 1e6 * np.exp(0.1 * np.random.default_rng(2).normal(size=(2, 400)))
-    own = {"airs": airs, "slopes": slopes, "forces": forces, "sides": np.array([2.0, 3.0])}
-    more = {"ratio": np.array(4.0), "slopes": slopes * 4**factor, "forces": forces * 4**factor}
-    sizes = np.array([[2e-6, 2e-6, 0.0], [3e-6, 1e-6, 0.0]])
-    lengths_held = 2e-4 * np.exp(0.1 * np.random.default_rng(3).normal(size=(2, 400)))
-    lost = np.where(np.arange(400) < 300, np.inf, lengths_held[1])
-    own |= {"sizes": sizes, "lengths": lengths_held}
-    more |= {"lengths": np.array([lengths_held[0] * 4**factor, lost])}
-    monkeypatch.setattr(rows, "_both", lambda *_: [(POINT, more, own)])
-    tips, of_patches = rows.rows_of_tips(tmp_path, 164e9), rows.rows_of_patches(tmp_path, 164e9)
-    of_bridges = rows.rows_of_bridges(tmp_path, 164e9)
-    assert (len(tips.surface), len(of_patches.surface), len(of_bridges.surface)) == (6, 2, 1), (
-        "free bridges are unknown"
-    )
-    np.testing.assert_allclose(of_bridges.values["at_2"], factor, rtol=1e-6)
-    for found_rows in (tips, of_patches):
-        for values in found_rows.values.values():
-            np.testing.assert_allclose(values, -factor, rtol=1e-6)
-        np.testing.assert_allclose(found_rows.coordinates[:, -1], math.log(4))
-    expected = states_of(POINT, airs, 164e9)[1][2].coordinates
-    np.testing.assert_allclose(tips.coordinates[-1, :-1], expected)
-    assert tips.coordinates.shape[1] == rows.OF_TIPS_ATTRACTED[-1] + 1 == len(COORDINATES) + 1
-    assert of_bridges.coordinates.shape[1] == rows.OF_BRIDGES_ATTRACTED[-1] + 1
-    assert of_patches.coordinates.shape[1] == rows.OF_PATCHES_ATTRACTED[-1] + 1 == len(OF_PATCHES) + 1
+    held = 2e-4 * np.exp(0.1 * np.random.default_rng(3).normal(size=(2, 400)))
+    own = {"airs": airs, "sides": np.array([2.0, 3.0]), "sizes": np.array([[2e-6, 2e-6, 0.0], [3e-6, 1e-6, 0.0]])}
+    for ratio in (None, *ALL):
+        changed = ratio.beside_water(point, seed) if ratio else OF_POLYSILICON
+        factor = math.exp(np.dot(exponents, changed.logarithms))
+        lost = np.where(np.arange(400) < 300, np.inf, held[1]) if ratio else held[1]
+        numbers = own | dict(zip(ratios.KEYS, vars(changed).values(), strict=True))
+        numbers |= {"slopes": factor * slopes, "forces": factor * forces, "lengths": np.array([factor * held[0], lost])}
+        for part in ("", patches.FOLDER, bridges.FOLDER):
+            path = folder / (ratio.folder if ratio else "") / part / "learn_any" / "0000.npz"
+            path.parent.mkdir(parents=True)
+            training.save(numbers, path)
+    return airs
+
+
+def first_point():
+    """First point from which is learnt, and its seed."""
+    return training.SETS["learn_any"].all[:1], training.SETS["learn_any"].seed
+
+
+@pytest.mark.parametrize(
+    ("ratio", "by_one"), list(zip(ALL, (0.8, 0.3, -0.5), strict=True)), ids=lambda each: getattr(each, "name", "")
+)
+def test_rows_of_a_ratio_have_the_change_of_their_own_contacts(tmp_path, ratio, by_one):
+    """The slope by the logarithm of the ratio alone: numbers grow by another power of the other ones."""
+    airs, ((point,), seed) = saved(tmp_path, (0.8, 0.3, -0.5)), first_point()
+    of_all = [of(tmp_path, 164e9, ratio) for of in (rows.rows_of_tips, rows.rows_of_patches, rows.rows_of_bridges)]
+    tips, of_patches, of_bridges = (each.rows for each in of_all)
+    counts = tuple(len(each.surface) for each in (tips, of_patches, of_bridges))
+    assert counts == (6, 2, 1), "free bridges are unknown"
+    np.testing.assert_allclose(of_bridges.values["at_2"], by_one, rtol=1e-5)
+    for values in (*tips.values.values(), *of_patches.values.values()):
+        np.testing.assert_allclose(values, -by_one, rtol=1e-5)
+    logarithms = ratio.beside_water(point, seed).logarithms
+    differ = [number for number, logarithm in enumerate(logarithms) if logarithm]
+    for each, names in zip(of_all, (COORDINATES, OF_PATCHES, OF_BRIDGES), strict=True):
+        np.testing.assert_allclose(each.rows.coordinates[0, len(names) :], logarithms)
+        assert [column - len(names) for column in each.columns if column >= len(names)] == differ
+        assert each.columns[-1] == len(names) + list(vars(OF_POLYSILICON)).index(ratio.name)
+    expected = states_of(point, airs, 164e9)[1][2].coordinates
+    np.testing.assert_allclose(tips.coordinates[-1, : len(expected)], expected)
 
 
 def test_a_tested_length_on_other_solids_is_that_of_its_changed_tips(tmp_path):
@@ -409,7 +558,7 @@ def test_a_tested_length_on_other_solids_is_that_of_its_changed_tips(tmp_path):
     pair, kelvin = rows.solids_of(point, name)
     water = film(humidity, kelvin, pair.wetting)
     expected = 1.5 / (13.5 * water.energy / point.stiffness) ** 0.25 * math.exp(0.9)
-    assert one.estimate == pytest.approx(expected * pair.attraction(water.energy) ** -0.1)
+    assert one.estimate == pytest.approx(expected * pair.beside_water(water.energy).through_water ** -0.1)
     (control,) = rows.tested(tmp_path, name, -1.0, processes, as_polysilicon=True)
     assert control.true == one.true
     assert control.estimate != pytest.approx(one.estimate, rel=1e-3)

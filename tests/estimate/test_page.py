@@ -89,12 +89,15 @@ def bridge(rng):
         "gap": rng.uniform(0.5e-6, 5e-6),
         "width": rng.uniform(8e-6, 40e-6),
     }
-    return device | {"stress": float(rng.choice([0, rng.uniform(0, 2e8)])), "length": rng.uniform(5e-5, 8e-4)}
+    device |= {"stress": float(rng.choice([0, rng.uniform(0, 2e8)])), "length": rng.uniform(5e-5, 8e-4)}
+    of_voltage = rng.choice([0, 1]) * 10 ** rng.uniform([-5, 3], [-1, 7])
+    return device | dict(zip(("added", "tension"), of_voltage.tolist(), strict=True))
 
 
 def stopper(rng):
     """Numbers of a random stopper, of which a few are too large."""
-    return {"sides": rng.uniform(1e-6, 6.3e-6, 2).tolist(), "force": 10 ** rng.uniform(-6, -3)}
+    device = {"sides": rng.uniform(1e-6, 6.3e-6, 2).tolist(), "force": 10 ** rng.uniform(-6, -3)}
+    return device | {"added": float(rng.choice([0, 10 ** rng.uniform(-7, -4)]))}  # more than many forces
 
 
 def in_python(question, table):

@@ -2,6 +2,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
+from legends import covering
 
 from stiction.config.files import load
 from stiction.plan.plan import Plan
@@ -73,6 +74,33 @@ def test_the_figure_shows_the_error_and_deviations_from_published_lengths(publis
     np.testing.assert_allclose(np.asarray(points.get_xdata(), float), HUMIDITIES)
     assert points.get_ydata()[0] > 10
     assert style.png(figure) == style.png(model_error.figure(*DATA, published))
+
+
+def test_all_pairs_share_the_panel_of_the_error_and_titles_say_how_large_it_is():
+    (errors, cases), published = DATA, pd.concat([PUBLISHED, PUBLISHED.assign(pair="b")])
+    errors = errors | {"b": pair_model_error.compute(study((0.4, 0.9, 1.3)), (0.45, 0.6, 0.7, 0.9))}
+    data = errors, cases | {("b", humidity): beams(700e-6) for _, humidity in cases}
+    frame = model_error.table(*data, published).frame
+    figure = model_error.drawn(frame)
+    assert len(figure.axes) == 3
+    assert [len(container[0].get_xdata()) for container in figure.axes[0].containers] == [3, 3]
+    first, *others = [panel.get_title(loc="left").replace("\n", " ") for panel in figure.axes]
+    most, least = frame.model_error_percent.max(), frame.model_error_percent.min()
+    assert most > 10
+    assert least < -5
+    too_long = f"too long by up to {-least:.0f} % (unsafe)"
+    assert first == f"(a) the model's cracks are too short by up to {most:.0f} % (safe) and {too_long}"
+    safe = model_error.drawn(frame.assign(model_error_percent=frame.model_error_percent.clip(0)))
+    assert "unsafe" not in safe.axes[0].get_title(loc="left"), "a control"
+    for letter, pair, title in zip("bc", "ab", others, strict=True):
+        rows = frame[(frame.pair == pair) & frame.published_um.notna()]
+        summits, full = (
+            np.sqrt((100 * (rows[name] / rows.published_um - 1)).pow(2).mean())
+            for name in ("crack_length_um", "full_contact_um")
+        )
+        assert title == f"({letter}) pair {pair}: rms {summits:.1f} % off by summits, {full:.1f} % by full contact"
+    assert len({panel.get_xlim() for panel in figure.axes}) == 1
+    assert covering(figure) == []
 
 
 def test_lengths_that_are_corrected_already_are_not_corrected_again():

@@ -23,7 +23,7 @@ from stiction.estimate.promise import promise
 from stiction.estimate.question import Question
 from stiction.estimate.state import THINNEST, film
 from stiction.estimate.table import Surrogate
-from stiction.estimate.voltage import Driven
+from stiction.estimate.voltage import Driven, Pulled
 
 #: Fractions of stuck devices in the answer.
 FRACTIONS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
@@ -161,7 +161,7 @@ class LengthsInAir:
     stated: Lengths
     members: tuple[Lengths, ...]  #: on typical surfaces in place of a partly assumed one
     averaged: bool  #: as of `stiction.estimate.question.Question`
-    closed: Driven | Stretched  #: form of a length from the bare one, without voltage or stress
+    closed: Driven | Pulled | Stretched  #: form of a length from the bare one, without voltage or stress
 
     def centre(self, score: float) -> tuple[float, float]:
         """Mean and scatter of the logarithm of a length [m] over surfaces like those that are assumed."""
@@ -243,7 +243,8 @@ def _in_air(question, air, table, tips, full):
     pairs += [question.members[0].get(name, beam) + question.members[1].get(name, substrate) for name in names]
     stated, *members = (_lengths(question, heights, air, table, tips, full) for heights in pairs)
     errors = _errors(question, table["dry"] if question.is_dry(air) else table)
-    return LengthsInAir(errors, stated, tuple(members), question.averaged, question.closed)
+    closed = question.closed_on(dict(zip(pairs, (stated, *members), strict=True)), air, table)
+    return LengthsInAir(errors, stated, tuple(members), question.averaged, closed)
 
 
 def _errors(question, learnt):

@@ -1,15 +1,15 @@
 """What all questions to the estimate have in common. Plain Python, SI units."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from stiction.constants import REFERENCE_TEMPERATURE
 from stiction.contact.air import is_humid
 from stiction.estimate.closed import flats
 from stiction.estimate.closed.flats import FlatBound, FlatPull
 from stiction.estimate.closed.life import Surroundings
-from stiction.estimate.length import most_after
+from stiction.estimate.length import Lengths, most_after
 from stiction.estimate.solids import SolidPair
 from stiction.estimate.state import film
 from stiction.estimate.statistics import Heights
@@ -30,6 +30,7 @@ class Asked:
     solids: SolidPair = field(default=SolidPair(), kw_only=True)
     surroundings: Surroundings = field(default=Surroundings(), kw_only=True)
     temperature: float = field(default=REFERENCE_TEMPERATURE, kw_only=True)  #: of the water [K]
+    added: float = field(default=0.0, kw_only=True)  #: that a voltage adds: energy [J m⁻²], of a stopper force [N]
     unit: ClassVar[str] = "um"  #: of its size, a length
 
     @property
@@ -45,7 +46,16 @@ class Asked:
     @property
     def is_driven(self) -> bool:
         """Whether a voltage holds it as well."""
-        return False
+        return self.added > 0
+
+    @property
+    def closed(self) -> Any:
+        """Closed form of its lengths from the bare ones, without voltage or stress."""
+        raise NotImplementedError
+
+    def closed_on(self, _found: Mapping[Heights, Lengths], _air: float, _table: Mapping[str, Any]) -> Any:
+        """Closed form in one air, from the bare lengths on the sums of two surfaces that can be meant."""
+        return self.closed
 
     @property
     def most(self) -> float:

@@ -12,11 +12,18 @@ Stress enters by P and κ: half of a bridge has the stiffnesses F by its deflect
 stress, as in `stiction.beam.tension.end_stiffness`. So it is held as well as one without stress of the length
 :math:`L (864 / F^2 M)^{1/8}`. On a uniform law, finite elements agree within 0.5 % at 50 MPa and 3 % at 200 MPa; the
 rest is learnt.
+
+At a voltage all lengths shrink by one factor, as in a run. Flats in contact gain the most, the energy :math:`\Gamma_V`
+and the tension p of `stiction.estimate.voltage`,
+
+.. math:: \Bigl( \frac{L}{L_V} \Bigr)^8 = \Bigl( 1 + \frac{\Gamma_V}{e} \Bigr) \Bigl( 1 + \frac p f \Bigr) .
+
+ASSUME: f is the median of patches as large as the middle, known from stoppers, and e what with it holds half of all.
 """
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 from stiction.config.units import to_si
@@ -26,10 +33,12 @@ from stiction.estimate.closed.beams import SlenderBeam
 from stiction.estimate.closed.bending import end_stiffness
 from stiction.estimate.closed.flats import FlatBound, FlatPull
 from stiction.estimate.closed.life import BeamLife
-from stiction.estimate.length import LengthRow, Lengths, NotLearnt, falling, known_at, of_solids
-from stiction.estimate.state import OF_PATCHES, Film, PatchState
+from stiction.estimate.force import pull_off
+from stiction.estimate.length import LengthRow, Lengths, NotLearnt, falling, known_at, on_solids
+from stiction.estimate.solids import OF_POLYSILICON, BesideWater
+from stiction.estimate.state import OF_PATCHES, Film, PatchState, film
 from stiction.estimate.statistics import Heights
-from stiction.estimate.table import Surrogate
+from stiction.estimate.table import Surrogate, processes
 
 #: Names of the coordinates.
 COORDINATES = (
@@ -45,9 +54,10 @@ _STEPS = 60
 
 @dataclass(frozen=True)
 class Stretched:
-    """Bridge under a stress."""
+    """Bridge under a stress, and at a voltage."""
 
     decay: float  #: k of its deflection, the root of the tension over the bending stiffness [1/m]
+    factor: float = 1.0  #: of its lengths without stress by a voltage
 
     @classmethod
     def of(cls, stress: float, thickness: float, modulus: float) -> "Stretched":
@@ -55,12 +65,12 @@ class Stretched:
         return cls(math.sqrt(12 * stress / modulus) / thickness)
 
     def bare(self, length: float) -> float:
-        """Length without stress that is held as well as one under it [m]."""
+        """Length without stress and voltage that is held as well as one with them [m]."""
         force, moment = end_stiffness(self.decay * length / 2)
-        return length * (864 / (force**2 * moment)) ** 0.125
+        return length * (864 / (force**2 * moment)) ** 0.125 / self.factor
 
     def length(self, bare: float) -> float:
-        """Length under the stress that is held as well as one without it [m].
+        """Length under the stress, at the voltage, that is held as well as one without them [m].
 
         Examples
         --------
@@ -86,14 +96,18 @@ class MiddleState:
     stress: float  #: [Pa]
     modulus: float  #: E of the bridge [Pa]
     modulus_in_contact: float  #: E of the solids [Pa]
-    attraction: float = 1.0  #: r of `stiction.estimate.solids` [-]
+    beside_water: BesideWater = OF_POLYSILICON
     names: ClassVar[tuple[str, ...]] = COORDINATES
+
+    @property
+    def held(self) -> float:
+        """Product e f L⁸ with which it is held without stress [N² m⁵]."""
+        return 768 * (self.modulus * self.thickness**3) ** 2 * self.gap**3
 
     @property
     def flooded_length(self) -> float:
         """Length at which flooded flats hold it without stress [m]."""
-        strength = self.film.energy**2 / self.film.height
-        return (768 * (self.modulus * self.thickness**3) ** 2 * self.gap**3 / strength) ** 0.125
+        return (self.held / (self.film.energy**2 / self.film.height)) ** 0.125
 
     @property
     def _width_in_contact(self):
@@ -105,7 +119,7 @@ class MiddleState:
     def patch(self) -> PatchState:
         """Middle in contact."""
         area = self.width * self._width_in_contact
-        return PatchState(self.heights, self.film, area, self.modulus_in_contact, self.attraction)
+        return PatchState(self.heights, self.film, area, self.modulus_in_contact, self.beside_water)
 
     @property
     def coordinates(self) -> tuple[float, ...]:
@@ -119,7 +133,27 @@ class MiddleState:
         return Stretched.of(self.stress, self.thickness, self.modulus)
 
 
-def lengths(state: MiddleState, middle: Surrogate, full: Surrogate, attraction: Surrogate | None = None) -> Lengths:
+def shorter(energy: float, pull_off: float, added: float, tension: float) -> float:
+    """Factor of lengths by an added energy [J m⁻²] and tension [Pa], beside those that hold them without a voltage.
+
+    Examples
+    --------
+    >>> shorter(6e-3, 3e6, 0.0, 0.0), round(shorter(6e-3, 3e6, 6e-3, 3e6), 4)
+    (1.0, 0.8409)
+    """
+    return ((1 + added / energy) * (1 + tension / pull_off)) ** -0.125
+
+
+def known_patch(patch: PatchState, learnt: Mapping[str, Any]) -> PatchState:
+    """Patch with the nearest area that was learnt, from the part of the table about stoppers.
+
+    ASSUME: beyond, its pressure hardly depends on the area.
+    """
+    low, high = (to_si(side, "um") ** 2 for side in learnt["sides"])
+    return replace(patch, area=min(max(patch.area, low), high))
+
+
+def lengths(state: MiddleState, middle: Surrogate, full: Surrogate, *changes: Surrogate) -> Lengths:
     """Lengths without stress that are held as well as those under it [m].
 
     Raises
@@ -127,8 +161,8 @@ def lengths(state: MiddleState, middle: Surrogate, full: Surrogate, attraction: 
     NotLearnt
         If the state is beyond what was learnt.
     """
-    change, values = (known_at(process, state.coordinates, COORDINATES) for process in (full, middle))
-    summits = falling(of_solids(values, state, attraction), math.log(state.flooded_length))
+    change = known_at(full, state.coordinates, COORDINATES)
+    summits = falling(on_solids(middle, state, *changes), math.log(state.flooded_length))
     return changed(summits, change["shift"], change["power"])
 
 
@@ -149,6 +183,7 @@ class Bridge(Asked):
     width: float  #: [m]
     stress: float  #: [Pa]
     length: float | None = None  #: [m]
+    tension: float = 0.0  #: that a voltage adds [Pa]
 
     @property
     def size(self) -> float | None:
@@ -159,6 +194,22 @@ class Bridge(Asked):
     def closed(self) -> Stretched:
         """Closed form of its lengths, from those without stress."""
         return Stretched.of(self.stress, self.thickness, self.solids.beam_modulus)
+
+    def closed_on(self, found: Mapping[Heights, Lengths], air: float, table: Mapping[str, Any]) -> Stretched:
+        """Closed form of its lengths in humid air, of the surface on which a voltage shortens them most."""
+        if not self.tension:
+            return self.closed
+        water = film(air, self.temperature, self.solids.wetting)
+        return replace(
+            self.closed, factor=min(self._factor(heights, water, each, table) for heights, each in found.items())
+        )
+
+    def _factor(self, heights, water, found, table):
+        """Factor of the lengths by its voltage on the sum of two surfaces, from those without it."""
+        state = self._state(heights, water)
+        force = pull_off(known_patch(state.patch, table["stoppers"]), table["stoppers"])
+        energy = state.held / (math.exp(found.logarithms[0]) ** 8 * force)
+        return shorter(energy, force, self.added, self.tension)
 
     @property
     def life(self) -> BeamLife:
@@ -177,11 +228,13 @@ class Bridge(Asked):
     def lengths(self, heights: Heights, water: Film, table: Mapping[str, Any], *_tips: Surrogate | None) -> Lengths:
         """Lengths without stress that are held as well as those that its middle holds, on the sum of two surfaces."""
         self._refuse(table["bridges"]["ranges"])
+        return lengths(self._state(heights, water), *processes(table["bridges"], "middle", "full"))
+
+    def _state(self, heights, water):
+        """State on the sum of two surfaces in a film."""
         sizes = self.thickness, self.gap, self.width, self.stress
-        solids, attraction = self.solids, self.solids.attraction(water.energy)
-        state = MiddleState(heights, water, *sizes, solids.beam_modulus, solids.modulus, attraction)
-        learnt = (Surrogate(**table["bridges"][name]) for name in ("middle", "full", "attraction"))
-        return lengths(state, *learnt)
+        solids, ratios = self.solids, self.solids.beside_water(water.energy)
+        return MiddleState(heights, water, *sizes, solids.beam_modulus, solids.modulus, ratios)
 
     def in_dry_air(self, _heights: Heights, _table: Mapping[str, Any]) -> Lengths:
         """Lengths in dry air, which are not known."""

@@ -43,18 +43,30 @@ function film(humidity, temperature, wetting, [tension, volume]) {
 
 // solids
 const POLYSILICON = {modulus: 164e9, beamModulus: 164e9, throughWater: 9.75e-20, inDryAir: 1.865e-19, wetting: 2}, ROUNDING = 1e-9;
-const attractionOf = (solids, {energy}, [tension]) => solids.throughWater / POLYSILICON.throughWater * (POLYSILICON.wetting * tension / energy);
-function ofSolids(values, state, place, {process, names}) {
-  const by = Math.log(state.attraction);
-  if (!by) return values;
-  const byOne = known(process, [...place, by], [...names, "attraction of the solids beside that of the water (from Hamaker constant and contact angles)"]);
-  return {...values, ...Object.fromEntries(["at_0", "at_1", "at_2"].map((name) => [name, values[name] + by * byOne[name]]))};
+const OF_WATER = 37e-21, following = (throughWater) => (Math.sqrt(throughWater) + Math.sqrt(OF_WATER)) ** 2;
+function besideWater({throughWater, inDryAir, modulus}, {energy}, [tension]) {
+  const own = POLYSILICON, byWater = own.wetting * tension / energy, water = throughWater / own.throughWater * byWater;
+  const air = inDryAir / own.inDryAir * byWater / (following(water * own.throughWater) / following(own.throughWater));
+  return [water, air, modulus / own.modulus * byWater];
+}
+const CHANGES = ["attraction", "attraction_through_air", "stiffness"], OF_SOLIDS = [
+  "attraction of the solids beside that of the water (from Hamaker constant and contact angles)",
+  "attraction of the solids through air beside that through water (from Hamaker constants and contact angles)",
+  "stiffness of the solids beside that of the water (from moduli and contact angles)"];
+function onSolids(process, ratios, place, part) {
+  const by = ratios.map(Math.log), changed = {...known(process, place, part.coordinates)};
+  CHANGES.forEach((name, k) => {
+    if (!by[k]) return;
+    const byOne = known(part[name], [...place, ...by], [...part.coordinates, ...OF_SOLIDS]);
+    for (const each of ["at_0", "at_1", "at_2"]) changed[each] += by[k] * byOne[each];
+  });
+  return changed;
 }
 const curvature = ({moments: [, second, fourth]}) => Math.sqrt(fourth / second);
 const tensionOf = ({height, energy}) => energy / height;
-function ofContact({heights, film, modulus}) {
+function ofContact({heights, film, modulus, besideWater: [, , stiffness]}) {
   const [low, second, fourth] = heights.moments, slope = heights.rms * Math.sqrt(second);
-  return [Math.log(heights.rms / film.height), Math.log(tensionOf(film) / (modulus * slope)), Math.log(fourth / second ** 2),
+  return [Math.log(heights.rms / film.height), Math.log(tensionOf(film) / (modulus / stiffness * slope)), Math.log(fourth / second ** 2),
     Math.log(low ** 2 * second), heights.skewness, heights.kurtosis];
 }
 const floodedSlope = (state) => (13.5 * state.film.energy / state.stiffness) ** 0.25;
@@ -96,8 +108,7 @@ function falling(values, shift) {
   return {logarithms: [first, second, third], slope: Math.max(LEAST, values.slope)};
 }
 function onSummits(state, gap, table) {
-  const place = coordinates(state), names = table.coordinates, learnt = {process: table.attraction, names};
-  return falling(ofSolids(known(table.tips, place, names), state, place, learnt), Math.log(1.5 * gap / floodedSlope(state)));
+  return falling(onSolids(table.tips, state.besideWater, coordinates(state), table), Math.log(1.5 * gap / floodedSlope(state)));
 }
 function lengthAt({logarithms: [first, second, third], slope}, score) {
   const [, b, c] = SCORES;
@@ -122,9 +133,9 @@ function lengths(state, gap, table) {
 }
 
 // force: its reciprocal stands for a length
-function reciprocals(patch, {forces, full, attraction, coordinates: names}) {
-  const place = ofPatch(patch), {ratio, power} = known(full, place, names);
-  const values = ofSolids(known(forces, place, names), patch, place, {process: attraction, names});
+function reciprocals(patch, stoppers) {
+  const place = ofPatch(patch), {ratio, power} = known(stoppers.full, place, stoppers.coordinates);
+  const values = onSolids(stoppers.forces, patch.besideWater, place, stoppers);
   return changedBy(falling(values, -Math.log(tensionOf(patch.film) * patch.area)), ratio, Math.max(1, power));
 }
 function changedBy({logarithms, slope}, ratio, power) {
@@ -167,7 +178,7 @@ function dryReciprocals(patch, {forces, full, coordinates: names}) {
   const scatter = (found.logarithms[0] - found.logarithms[2]) / 2;
   return scattered(found, power, -change.ratio - (1 - power ** 2) * scatter ** 2 / 2);
 }
-function ofStopper({sides, force, solids = POLYSILICON}, {water: ofWater, stoppers, dry}) {
+function ofStopper({sides, force, added, solids = POLYSILICON}, {water: ofWater, stoppers, dry}) {
   const [one, other] = sides, {modulus} = solids;
   const areaOf = ({sides: [low, high]}) => {
     if (!sides.every((side) => low * 1e-6 <= side && side <= high * 1e-6)) throw new NotLearnt(`sides of a stopper must be from ${low} to ${high} µm`);
@@ -175,9 +186,9 @@ function ofStopper({sides, force, solids = POLYSILICON}, {water: ofWater, stoppe
   };
   return {
     lengths: (heights, water) =>
-      reciprocals({heights, film: water, area: areaOf(stoppers), modulus, attraction: attractionOf(solids, water, ofWater)}, stoppers),
+      reciprocals({heights, film: water, area: areaOf(stoppers), modulus, besideWater: besideWater(solids, water, ofWater)}, stoppers),
     inDryAir: (heights) => dryReciprocals({heights, constant: solids.inDryAir, area: areaOf(dry.stoppers), modulus}, dry.stoppers),
-    closed: drivenBy(0), errors: (part) => part.stoppers, stated: force && 1 / force,
+    closed: pulledBy(added || 0), errors: (part) => part.stoppers, stated: force && 1 / force,
     row: ({length, intervals}) => ({size: 1 / length, intervals: Object.fromEntries(Object.entries(intervals).map(([key, [low, high]]) => [key, [1 / high, 1 / low]]))}),
   };
 }
@@ -189,9 +200,9 @@ function endStiffness(kl) {
   const force = kl < DIFFERENT ? 12 / (1 - kl ** 2 / 10 + 17 * kl ** 4 / 1680) : kl ** 2 / (1 - mean);
   return [force, force * mean / 2];
 }
-function stretchedBy(stress, thickness, modulus) {
+function stretchedBy(stress, thickness, modulus, factor = 1) {
   const decay = Math.sqrt(12 * stress / modulus) / thickness, ends = (length) => endStiffness(decay * length / 2);
-  const bare = (length) => { const [force, moment] = ends(length); return length * (864 / (force ** 2 * moment)) ** 0.125; };
+  const bare = (length) => { const [force, moment] = ends(length); return length * (864 / (force ** 2 * moment)) ** 0.125 / factor; };
   const under = (short) => {
     let length = short;
     for (let k = 0; k < 60; k++) length *= short / bare(length);
@@ -199,8 +210,9 @@ function stretchedBy(stress, thickness, modulus) {
   };
   return {bare, length: under, decay};
 }
-function floodedLength({film, thickness, gap, modulus}) {
-  return (768 * (modulus * thickness ** 3) ** 2 * gap ** 3 / (film.energy ** 2 / film.height)) ** 0.125;
+const heldBy = ({thickness, gap, modulus}) => 768 * (modulus * thickness ** 3) ** 2 * gap ** 3;
+function floodedLength(state) {
+  return (heldBy(state) / (state.film.energy ** 2 / state.film.height)) ** 0.125;
 }
 function contactOf(state) {
   return 8 * state.modulus * state.thickness ** 3 * state.gap / (floodedLength(state) ** 3 * tensionOf(state.film));
@@ -210,14 +222,21 @@ function ofMiddle(state, {decay}) {
   const contact = contactOf(state);
   return [...ofPatch(middleOf(state)), Math.log(state.gap / state.film.height), decay * contact];
 }
-function lengthsOfBridge(state, closed, {middle, full, attraction, coordinates: names}) {
-  const place = ofMiddle(state, closed), {shift, power} = known(full, place, names);
-  const values = ofSolids(known(middle, place, names), state, place, {process: attraction, names});
+function lengthsOfBridge(state, closed, bridges) {
+  const place = ofMiddle(state, closed), {shift, power} = known(bridges.full, place, bridges.coordinates);
+  const values = onSolids(bridges.middle, state.besideWater, place, bridges);
   const {logarithms, slope} = falling(values, Math.log(floodedLength(state))), [median] = logarithms;
   return {logarithms: logarithms.map((each) => median + shift + power * (each - median)), slope: power * slope};
 }
-function ofBridge({thickness, gap, width, stress, length, solids = POLYSILICON}, {water: ofWater, bridges}) {
+function shorterBy({logarithms: [median]}, state, {energy, tension}, stoppers) { // at a voltage
+  const [low, high] = stoppers.sides.map((side) => (side * 1e-6) ** 2), middle = middleOf(state);
+  const patch = {...middle, area: Math.min(Math.max(middle.area, low), high)};
+  const pull = Math.exp(-reciprocals(patch, stoppers).logarithms[0]) / patch.area;
+  return ((1 + energy / (heldBy(state) / (Math.exp(median) ** 8 * pull))) * (1 + tension / pull)) ** -0.125;
+}
+function ofBridge({thickness, gap, width, stress, length, added = 0, tension = 0, solids = POLYSILICON}, {water: ofWater, bridges, stoppers}) {
   const modulus = solids.beamModulus, closed = stretchedBy(stress, thickness, modulus);
+  const stateOf = (heights, water) => ({heights, film: water, thickness, gap, width, modulus, inContact: solids.modulus, besideWater: besideWater(solids, water, ofWater)});
   return {
     lengths: (heights, water) => {
       const sizes = {thickness, gap, width, stress};
@@ -225,8 +244,11 @@ function ofBridge({thickness, gap, width, stress, length, solids = POLYSILICON},
         const outside = !(low * UNITS[unit] <= sizes[name] && sizes[name] <= high * UNITS[unit]), symbol = unit.replace("u", "µ");
         if (outside) throw new NotLearnt(`the ${name} of a bridge must be from ${low} to ${high} ${symbol}`);
       }
-      const attraction = attractionOf(solids, water, ofWater);
-      return lengthsOfBridge({heights, film: water, thickness, gap, width, modulus, inContact: solids.modulus, attraction}, closed, bridges);
+      return lengthsOfBridge(stateOf(heights, water), closed, bridges);
+    },
+    closedOn: (pairs, found, water) => {
+      const factors = pairs.map((heights, k) => tension ? shorterBy(found[k], stateOf(heights, water), {energy: added, tension}, stoppers) : 1);
+      return stretchedBy(stress, thickness, modulus, Math.min(...factors));
     },
     inDryAir: () => { throw new NotLearnt("a bridge was not learnt in dry air"); },
     closed, errors: (part) => part.bridges, stated: length, row: ({length, intervals}) => ({size: length, intervals}),
@@ -235,7 +257,7 @@ function ofBridge({thickness, gap, width, stress, length, solids = POLYSILICON},
 function ofCantilever({thickness, gap, width, length, added, solids = POLYSILICON}, table) {
   const stiffness = solids.beamModulus * thickness ** 3 / gap ** 2, {modulus} = solids;
   return {
-    lengths: (heights, water) => lengths({heights, film: water, stiffness, width, modulus, attraction: attractionOf(solids, water, table.water)}, gap, table),
+    lengths: (heights, water) => lengths({heights, film: water, stiffness, width, modulus, besideWater: besideWater(solids, water, table.water)}, gap, table),
     inDryAir: (heights) => dryLengths({heights, constant: solids.inDryAir, stiffness, width, modulus}, gap, table.dry),
     closed: drivenBy(8 * (added || 0) / (3 * stiffness * gap ** 4)), errors: (part) => part, stated: length,
     row: ({length, intervals}) => {
@@ -463,6 +485,7 @@ function withoutVoltage(length, drive) {
   return cube > 0 ? cube ** (-1 / 3) : Infinity;
 }
 const drivenBy = (drive) => ({length: (bare) => drive ? atVoltage(bare, drive) : bare, bare: (length) => withoutVoltage(length, drive)});
+const pulledBy = (added) => ({length: (bare) => bare / (1 + added * bare), bare: (length) => added * length < 1 ? length / (1 - added * length) : Infinity});
 
 // answer
 const FRACTIONS = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6], STUDENT = {90: 2.353363, 95: 3.182446};
@@ -477,27 +500,26 @@ function centre(one, score) {
 }
 function answer(question, table) {
   const kind = question.sides ? ofStopper : "stress" in question ? ofBridge : ofCantilever;
-  const {lengths, inDryAir, closed, errors, stated, row} = kind(question, table);
+  const {lengths, inDryAir, closed, closedOn, errors, stated, row} = kind(question, table), pairs = [question.stated, ...question.members];
   const solids = question.solids || POLYSILICON, {wetting} = solids, temperature = question.temperature || REFERENCE;
   const isOfPolysilicon = temperature === REFERENCE && Object.keys(POLYSILICON).every((key) => solids[key] === POLYSILICON[key]);
   const errorsOf = (part) => isOfPolysilicon || !part.margins_of_other_solids ? part : {...part, margins: part.margins_of_other_solids};
   const airs = question.humidities.map((air) => {
-    const isHumid = air > 0 && wetting > ROUNDING;
-    const water = isHumid ? film(air, temperature, wetting, table.water) : null;
-    const of = isHumid ? (each) => lengths(each, water) : inDryAir;
-    return {water, stated: of(question.stated), members: question.members.map(of), errors: errorsOf(errors(isHumid ? table : table.dry))};
+    const isHumid = air > 0 && wetting > ROUNDING, water = isHumid ? film(air, temperature, wetting, table.water) : null;
+    const found = pairs.map((each) => isHumid ? lengths(each, water) : inDryAir(each));
+    return {water, stated: found[0], members: found.slice(1), errors: errorsOf(errors(isHumid ? table : table.dry)), closed: closedOn ? closedOn(pairs, found, water) : closed};
   });
   const once = (p) => -Math.expm1(Math.log1p(-p) / question.touchdowns);
   const rows = FRACTIONS.map((fraction) => {
     const score = normalScore(once(fraction)), ends = {};
     for (const confidence of ["90", "95"]) {
-      const both = airs.map((one) => endsOf(one, score, confidence).map((end) => closed.length(Math.exp(end))));
+      const both = airs.map((one) => endsOf(one, score, confidence).map((end) => one.closed.length(Math.exp(end))));
       ends[confidence] = [0, 1].map((side) => Math.min(...both.map((each) => each[side])));
     }
-    const length = (one) => Math.exp(logarithmOf(one, score, question.averaged));
-    return {fraction, ...row({length: closed.length(Math.min(...airs.map(length))), intervals: ends})};
+    const length = (one) => one.closed.length(Math.exp(logarithmOf(one, score, question.averaged)));
+    return {fraction, ...row({length: Math.min(...airs.map(length)), intervals: ends})};
   });
-  return {rows, stuck: stated ? stuck(question, airs, closed.bare(stated)) : null, life: question.sides ? null : lifeOf(question),
+  return {rows, stuck: stated ? stuck(question, airs, stated) : null, life: question.sides ? null : lifeOf(question),
     flat: worstOnFlats(question, airs.map(({water}) => water))};
 }
 const logarithmOf = (one, score, averaged) => averaged ? centre(one, score)[0] : Math.log(lengthAt(one.stated, score));
@@ -515,9 +537,9 @@ function scoreAt(logarithm, value) {
   return high;
 }
 const after = (score, touchdowns) => -Math.expm1(touchdowns * Math.log1p(-fractionOf(score)));
-function stuck(question, airs, bare) {
-  const value = Math.log(bare), found = airs.map((one) => {
-    const lines = [(score) => logarithmOf(one, score, question.averaged), ...[1, 0].map((k) => (score) => endsOf(one, score, "95")[k])];
+function stuck(question, airs, stated) {
+  const found = airs.map((one) => {
+    const value = Math.log(one.closed.bare(stated)), lines = [(score) => logarithmOf(one, score, question.averaged), ...[1, 0].map((k) => (score) => endsOf(one, score, "95")[k])];
     return lines.map((line) => after(scoreAt(line, value), question.touchdowns));
   });
   return [0, 1, 2].map((k) => Math.max(...found.map((each) => each[k])));

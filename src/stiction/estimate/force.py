@@ -19,11 +19,11 @@ from stiction.estimate.asked import Asked
 from stiction.estimate.closed import flats
 from stiction.estimate.closed.flats import FlatBound, FlatPull
 from stiction.estimate.closed.life import StopperLife
-from stiction.estimate.length import LengthRow, Lengths, NotLearnt, falling, known_at, of_solids
+from stiction.estimate.length import LengthRow, Lengths, NotLearnt, falling, known_at, on_solids
 from stiction.estimate.state import OF_PATCHES, Film, PatchState
 from stiction.estimate.statistics import Heights
-from stiction.estimate.table import Surrogate
-from stiction.estimate.voltage import Driven
+from stiction.estimate.table import Surrogate, processes
+from stiction.estimate.voltage import Pulled
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class ForceRow:
         return self.force
 
 
-def reciprocals(patch: PatchState, forces: Surrogate, full: Surrogate, attraction: Surrogate | None = None) -> Lengths:
+def reciprocals(patch: PatchState, forces: Surrogate, full: Surrogate, *changes: Surrogate) -> Lengths:
     """Reciprocals of the pull-off forces of a patch [1/N].
 
     Raises
@@ -48,8 +48,8 @@ def reciprocals(patch: PatchState, forces: Surrogate, full: Surrogate, attractio
     NotLearnt
         If the patch is beyond what was learnt.
     """
-    change, values = (known_at(process, patch.coordinates, OF_PATCHES) for process in (full, forces))
-    summits = falling(of_solids(values, patch, attraction), -math.log(patch.flooded_force))
+    change = known_at(full, patch.coordinates, OF_PATCHES)
+    summits = falling(on_solids(forces, patch, *changes), -math.log(patch.flooded_force))
     return _changed(summits, change["ratio"], max(1.0, change["power"]))
 
 
@@ -58,6 +58,22 @@ def _changed(summits, ratio, power):
     median = summits.logarithms[0]
     shift = median - ratio - (1 - power**2) * summits.fall**2 / 2
     return Lengths(tuple(shift + power * (each - median) for each in summits.logarithms), power * summits.slope)
+
+
+def pull_off(patch: PatchState, learnt: Mapping[str, Any]) -> float:
+    """Median pull-off pressure of a patch, from the part of the table about stoppers [Pa].
+
+    Raises
+    ------
+    NotLearnt
+        If the patch is beyond what was learnt.
+    """
+    return math.exp(-_reciprocals_of(patch, learnt).logarithms[0]) / patch.area
+
+
+def _reciprocals_of(patch, learnt):
+    """Reciprocals of the forces of a patch."""
+    return reciprocals(patch, *processes(learnt, "forces", "full"))
 
 
 @dataclass(frozen=True)
@@ -79,9 +95,9 @@ class Stopper(Asked):
         return None if self.force is None else 1 / self.force
 
     @property
-    def closed(self) -> Driven:
-        """Closed form of its voltage, which it has not."""
-        return Driven(0.0)
+    def closed(self) -> Pulled:
+        """Closed form of its forces at its voltage."""
+        return Pulled(self.added)
 
     @property
     def life(self) -> StopperLife:
@@ -98,9 +114,9 @@ class Stopper(Asked):
 
     def lengths(self, heights: Heights, water: Film, table: Mapping[str, Any], *_tips: Surrogate | None) -> Lengths:
         """Reciprocals of its pull-off forces on the sum of two surfaces [1/N]."""
-        learnt, attraction = table["stoppers"], self.solids.attraction(water.energy)
-        patch = PatchState(heights, water, self._area(learnt), self.solids.modulus, attraction)
-        return reciprocals(patch, *(Surrogate(**learnt[name]) for name in ("forces", "full", "attraction")))
+        learnt, ratios = table["stoppers"], self.solids.beside_water(water.energy)
+        patch = PatchState(heights, water, self._area(learnt), self.solids.modulus, ratios)
+        return _reciprocals_of(patch, learnt)
 
     def in_dry_air(self, heights: Heights, table: Mapping[str, Any]) -> Lengths:
         """Reciprocals of its pull-off forces in dry air [1/N]."""

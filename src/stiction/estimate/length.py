@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar, Protocol
 
+from stiction.estimate.solids import BesideWater
 from stiction.estimate.state import COORDINATES, OF_SOLIDS, TipState
 from stiction.estimate.table import Surrogate
 
@@ -66,9 +67,7 @@ class Impossible(NotLearnt):
     """Refusal of numbers that no device has. A run refuses them, too."""
 
 
-def lengths(
-    state: TipState, gap: float, tips: Surrogate, full: Surrogate | None, attraction: Surrogate | None = None
-) -> Lengths:
+def lengths(state: TipState, gap: float, tips: Surrogate, full: Surrogate | None, *changes: Surrogate) -> Lengths:
     """Lengths of beams over a gap [m] in a state.
 
     Full contact changes an attraction by a factor, as a stiffer beam would. ASSUME: on other solids by the same factor.
@@ -78,39 +77,43 @@ def lengths(
     NotLearnt
         If the state is beyond what was learnt.
     """
-    distribution = _on_summits(state, gap, tips, attraction)
+    distribution = _on_summits(state, gap, tips, *changes)
     for _ in range(2 if full else 0):
         changed = replace(state, stiffness=state.stiffness / change(state, distribution, gap, full))
-        distribution = _on_summits(changed, gap, tips, attraction)
+        distribution = _on_summits(changed, gap, tips, *changes)
     return distribution
 
 
-def _on_summits(state, gap, tips, attraction):
+def _on_summits(state, gap, tips, *changes):
     """Lengths on summits alone."""
-    values = of_solids(known_at(tips, state.coordinates, COORDINATES), state, attraction)
-    return falling(values, math.log(1.5 * gap / state.flooded_slope))
+    return falling(on_solids(tips, state, *changes), math.log(1.5 * gap / state.flooded_slope))
 
 
-class Attracted(Protocol):
-    """State of solids that attract each other."""
+class OnSolids(Protocol):
+    """State of two solids with water between them."""
 
-    attraction: float
+    beside_water: BesideWater
     coordinates: Sequence[float]
     names: ClassVar[tuple[str, ...]]
 
 
-def of_solids(values: Mapping[str, float], state: Attracted, attraction: Surrogate | None) -> Mapping[str, float]:
-    """Quantities on solids that attract each other as those of a state, from those on polysilicon.
+def on_solids(process: Surrogate, state: OnSolids, *changes: Surrogate) -> Mapping[str, float]:
+    """Quantities of a process on the solids of a state, from those on polysilicon.
+
+    By the changes for one of each of `stiction.estimate.solids.BesideWater.logarithms`.
 
     Raises
     ------
     NotLearnt
         If the state is beyond what was learnt.
     """
-    if not (attraction and (by := math.log(state.attraction))):
-        return values
-    by_one = known_at(attraction, (*state.coordinates, by), (*state.names, OF_SOLIDS))
-    return dict(values) | {name: values[name] + by * by_one[name] for name in NAMES[:3]}
+    coordinates, by = state.coordinates, state.beside_water.logarithms
+    values = dict(known_at(process, coordinates, state.names))
+    for change_by_one, logarithm in zip(changes, by, strict=False):
+        if logarithm:
+            of_one = known_at(change_by_one, (*coordinates, *by), (*state.names, *OF_SOLIDS))
+            values |= {name: values[name] + logarithm * of_one[name] for name in NAMES[:3]}
+    return values
 
 
 #: Least fall of the logarithm of a length by one normal score.

@@ -37,7 +37,7 @@ const OF_MATERIAL = [
   ["dry_zJ", "Hamaker constant through dry air [zJ]", 60, 480, 0.5, 186.5],
 ];
 const OWN = {[CANTILEVER]: ["thickness_um", "gap_um", "width_um", "length_um", "voltage_V", "dielectric_nm", "tension_mN_per_m"],
-  [BRIDGE]: ["thickness_um", "below_um", "width_um", "length_um", "stress_MPa", "tension_mN_per_m"], [STOPPER]: ["side_um", "other_um", "force_uN"]};
+  [BRIDGE]: ["thickness_um", "below_um", "width_um", "length_um", "stress_MPa", "voltage_V", "dielectric_nm", "tension_mN_per_m"], [STOPPER]: ["side_um", "other_um", "force_uN", "voltage_V", "dielectric_nm"]};
 const DRY = "dry", DRIEST = 0.345, airOf = (value) => value("humidity") < DRIEST ? DRY : value("humidity");
 const PAIR = ["known_skewness", "known_kurtosis"]; // a file states both or neither
 const OPEN = OF_SURFACE.map(([key]) => key), byId = (id) => document.getElementById(id);
@@ -66,11 +66,14 @@ function questionOf({own, kind, like, substrate, value, open}) {
   const asked = {stated: of(like), members: open ? Object.keys(TABLE.library).map(of) : [], averaged: false,
     humidities: [airOf(value) === DRY ? 0 : airOf(value)], touchdowns: value("touchdowns")};
   Object.assign(asked, {solids: solidsOf(value), temperature: value("temperature_K")});
-  if (kind === STOPPER) return {...asked, sides: ["side_um", "other_um"].map((key) => value(key) * 1e-6), force: value("force_uN") * 1e-6};
+  const potential = value("voltage_V"), distance = value("dielectric_nm") * 1e-9, tension = PERMITTIVITY * (potential / distance) ** 2 / 2;
+  if (kind === STOPPER) {
+    const sides = ["side_um", "other_um"].map((key) => value(key) * 1e-6);
+    return {...asked, sides, force: value("force_uN") * 1e-6, added: tension * sides[0] * sides[1]};
+  }
   const beam = {...asked, thickness: value("thickness_um") * 1e-6, width: value("width_um") * 1e-6, length: value("length_um") * 1e-6, liquid: value("tension_mN_per_m") * 1e-3};
-  if (kind === BRIDGE) return {...beam, gap: value("below_um") * 1e-6, stress: value("stress_MPa") * 1e6};
-  const gap = value("gap_um") * 1e-6, energy = energyOf(value("voltage_V"), value("dielectric_nm") * 1e-9, gap);
-  return {...beam, added: energy, gap};
+  const gap = value(kind === BRIDGE ? "below_um" : "gap_um") * 1e-6, driven = {...beam, added: energyOf(potential, distance, gap), gap};
+  return kind === BRIDGE ? {...driven, tension, stress: value("stress_MPa") * 1e6} : driven;
 }
 function solidsOf(value) {
   const modulus = value("modulus_GPa") * 1e9, cosine = (key) => Math.cos(value(key) * Math.PI / 180);
@@ -131,7 +134,7 @@ function leftOut(kind, value) {
   return `For exact inputs${words && `, before ${words}`}.`;
 }
 function flatOf({size, tip, isHumid}, symbol, kind, value) {
-  const start = `${kind === CANTILEVER && value("voltage_V") ? "Without its voltage, flat" : "Flat"}${isHumid ? ", flooded" : ""} surfaces`;
+  const start = `${value("voltage_V") ? "Without its voltage, flat" : "Flat"}${isHumid ? ", flooded" : ""} surfaces`;
   const most = `${grouped(bound(size * 1e6, kind === STOPPER))} ${symbol}`;
   if (kind === STOPPER) return `${start} hold ${most}. No surface of this area holds more.`;
   if (kind === BRIDGE) return `${start} stick from ${most} on. No surface sticks at a shorter length.`;
@@ -178,15 +181,14 @@ function materialOf(value) {
 const waterOf = (value) => value("temperature_K") === REFERENCE ? "" : `water: {temperature_K: ${value("temperature_K")}}\n`;
 const NAMES = {[CANTILEVER]: "Lever", [BRIDGE]: "Bridge", [STOPPER]: "Bump"};
 const SIZES = {
-  [CANTILEVER]: ofLever,
-  [BRIDGE]: (value) => `${ofBeam(value, "below_um")}, residual_stress_MPa: ${value("stress_MPa")}`,
-  [STOPPER]: (value) => `contact_um: [${value("side_um")}, ${value("other_um")}], restoring_force_uN: ${value("force_uN")}`,
+  [CANTILEVER]: (value) => atVoltageOf(ofBeam(value, "gap_um"), value),
+  [BRIDGE]: (value) => atVoltageOf(`${ofBeam(value, "below_um")}, residual_stress_MPa: ${value("stress_MPa")}`, value),
+  [STOPPER]: (value) => atVoltageOf(`contact_um: [${value("side_um")}, ${value("other_um")}], restoring_force_uN: ${value("force_uN")}`, value),
 };
 function ofBeam(value, gap) {
   return ["length_um", "thickness_um", "width_um"].map((key) => `${key}: ${value(key)}`).join(", ") + `, gap_um: ${value(gap)}`;
 }
-function ofLever(value) {
-  const sizes = ofBeam(value, "gap_um");
+function atVoltageOf(sizes, value) {
   const dielectric = `dielectric: {thickness_nm: ${value("dielectric_nm")}, permittivity: 1}`;
   return value("voltage_V") ? `${sizes}, voltage_V: ${value("voltage_V")}, ${dielectric}` : sizes;
 }

@@ -21,9 +21,9 @@ from stiction.estimate.length import Impossible, LengthRow, Lengths, NotLearnt, 
 from stiction.estimate.solids import SolidPair
 from stiction.estimate.state import Film, TipState, stiffness_of
 from stiction.estimate.statistics import Heights, moments_of, slope_of
-from stiction.estimate.table import Surrogate
+from stiction.estimate.table import Surrogate, processes
 from stiction.estimate.voltage import KEYS as OF_VOLTAGES
-from stiction.estimate.voltage import Driven, drive_of, energy_of
+from stiction.estimate.voltage import Driven, drive_of, energy_of, tension_of
 
 Library = Mapping[str, Mapping[str, Any]]
 
@@ -34,9 +34,9 @@ OF_PAIRS = ("beam", "substrate", "gap_um", "humidities", "attraction", "coarser_
 OF_DEVICES = ("kind", "pair", "length_um", "thickness_um", "gap_um", "width_um", "humidities", "touchdowns")
 OF_DEVICES += ("shock_g", *OF_VOLTAGES)
 OF_BRIDGES = ("kind", "pair", "length_um", "thickness_um", "gap_um", "width_um", "residual_stress_MPa")
-OF_BRIDGES += ("humidities", "touchdowns", "shock_g")
+OF_BRIDGES += ("humidities", "touchdowns", "shock_g", *OF_VOLTAGES)
 OF_STOPPERS = ("kind", "pair", "contact_um", "restoring_force_uN", "stiffness_N_per_m", "gap_um", "mass_ng")
-OF_STOPPERS += ("humidities", "touchdowns", "electrode", "shock_g")
+OF_STOPPERS += ("humidities", "touchdowns", "electrode", "shock_g", *OF_VOLTAGES)
 #: Keys of a material, of which the last two change no length or force.
 OF_MATERIALS = ("young_modulus_GPa", "poisson_ratio", "hamaker_constant_zJ", "contact_angle_deg")
 OF_MATERIALS += ("hardness_GPa", "density_kg_per_m3")
@@ -112,17 +112,11 @@ class Question(Asked):
     gap: float  #: [m]
     width: float  #: [m]
     length: float | None = None  #: [m]
-    added: float = 0.0  #: energy that a voltage adds [J m⁻²]
 
     @property
     def size(self) -> float | None:
         """Its length [m]."""
         return self.length
-
-    @property
-    def is_driven(self) -> bool:
-        """Whether a voltage holds it as well."""
-        return self.added > 0
 
     @property
     def _stiffness(self):
@@ -152,9 +146,9 @@ class Question(Asked):
         self, heights: Heights, water: Film, table: Mapping[str, Any], tips: Surrogate, full: Surrogate | None
     ) -> Lengths:
         """Lengths at which it sticks on the sum of two surfaces [m]."""
-        solids, attraction = self.solids, self.solids.attraction(water.energy)
-        state = TipState(heights, water, self._stiffness, self.width, solids.modulus, attraction)
-        return lengths(state, self.gap, tips, full, Surrogate(**table["attraction"]))
+        solids, ratios = self.solids, self.solids.beside_water(water.energy)
+        state = TipState(heights, water, self._stiffness, self.width, solids.modulus, ratios)
+        return lengths(state, self.gap, tips, full, *processes(table))
 
     def in_dry_air(self, heights: Heights, table: Mapping[str, Any]) -> Lengths:
         """Lengths at which it sticks in dry air [m]."""
@@ -409,7 +403,8 @@ def of_area(name: str, device: Mapping[str, Any], sides: Sequence, **more: Any) 
     kind = KINDS.get(device.get("kind"))
     stated = kind.stated(device) if kind and any(set(way.keys) <= device.keys() for way in kind.ways) else device
     force = to_si(stated["restoring_force_uN"], "uN") if "restoring_force_uN" in stated else None
-    return Stopper(name, surfaces, members, airs_of(device), area, force, **_often(device), **more)
+    added = tension_of(device) * math.prod(area)
+    return Stopper(name, surfaces, members, airs_of(device), area, force, added=added, **_often(device), **more)
 
 
 def of_middle(name: str, device: Mapping[str, Any], sides: Sequence, **more: Any) -> Bridge:
@@ -417,6 +412,7 @@ def of_middle(name: str, device: Mapping[str, Any], sides: Sequence, **more: Any
     surfaces, members = zip(*sides, strict=True)
     sizes, length = _sizes(device)
     airs, stress = airs_of(device), to_si(device["residual_stress_MPa"], "MPa")
+    more = more | {"added": energy_of(device, sizes[1]), "tension": tension_of(device)}
     return Bridge(name, surfaces, members, airs, *sizes, stress, length, **_often(device), **more)
 
 

@@ -5,12 +5,17 @@ Contact depends on both moduli by E' alone, so that two bodies with the Poisson 
 .. math:: E = 2 (1 - \nu^2) E' , \quad \frac{1}{E'} = \frac{1 - \nu_1^2}{E_1} + \frac{1 - \nu_2^2}{E_2}
 
 stand for both. Contact angles and temperature are in height and energy Γ of the film. What remains of other solids in
-humid air is their attraction through water beside that of the water,
+humid air are their attractions through water and, beyond the film, through air, beside that of the water,
 
 .. math:: r = \frac{\mathfrak{H}}{\mathfrak{H}_0} \frac{\Gamma_0}{\Gamma} ,
 
-1 for polysilicon that water wets perfectly at 300 K. Its change of lengths and forces is learnt. ASSUME: in humid air
-the attraction through air, beyond the film, follows from that through water.
+1 for polysilicon that water wets perfectly at 300 K. Through air, r is :math:`s \, c(r)` with the part c that follows
+from that through water by the combining relation, c(1) = 1. Nor is their modulus beside the energy of a film of some
+height what it is on polysilicon,
+
+.. math:: q = \frac{E}{E_0} \frac{\Gamma_0}{\Gamma} .
+
+The changes of lengths and forces by r, s and q are learnt.
 """
 
 import math
@@ -24,6 +29,40 @@ from stiction.contact.air import DRY, ROUNDING
 
 #: Medium between solids in humid air.
 _WATER = "water"
+#: Hamaker constant of water [J]; J. N. Israelachvili, Intermolecular and Surface Forces.
+OF_WATER = to_si(37.0, "zJ")
+
+
+def following(through_water: float) -> float:
+    r"""Hamaker constant of two solids through air [J] that follows from that through water [J].
+
+    By the combining relation, :math:`\bigl( \sqrt{\mathfrak{H}} + \sqrt{\mathfrak{H}_w} \bigr)^2`. As
+    `stiction.contact.vanderwaals.combined`.
+
+    Examples
+    --------
+    >>> round(1e21 * following(4.6e-21)), round(1e21 * following(250e-21))  # silica, gold [zJ]
+    (68, 479)
+    """
+    return (math.sqrt(through_water) + math.sqrt(OF_WATER)) ** 2
+
+
+@dataclass(frozen=True)
+class BesideWater:
+    """Two solids beside the water between them, over polysilicon."""
+
+    through_water: float = 1.0  #: attraction r
+    through_air: float = 1.0  #: attraction s, beside what follows from r
+    stiffness: float = 1.0  #: q
+
+    @property
+    def logarithms(self) -> tuple[float, float, float]:
+        """Logarithms of r, s and q."""
+        return math.log(self.through_water), math.log(self.through_air), math.log(self.stiffness)
+
+
+#: Of polysilicon that water wets perfectly at 300 K.
+OF_POLYSILICON = BesideWater()
 
 
 @dataclass(frozen=True)
@@ -66,11 +105,14 @@ class SolidPair:
         """Whether water condenses between them, as `stiction.contact.meniscus.is_wetted`."""
         return self.wetting > ROUNDING
 
-    def attraction(self, energy: float) -> float:
-        """Attraction r through water beside that of a film of an energy [J m⁻²], over polysilicon's [-]."""
+    def beside_water(self, energy: float) -> BesideWater:
+        """Ratios beside a film of an energy [J m⁻²]."""
         polysilicon = SolidPair()
-        flooded = polysilicon.wetting * WATER_SURFACE_ENERGY
-        return self.through_water / polysilicon.through_water * (flooded / energy)
+        by_water = polysilicon.wetting * WATER_SURFACE_ENERGY / energy
+        through_water = self.through_water / polysilicon.through_water * by_water
+        combined = following(through_water * polysilicon.through_water) / following(polysilicon.through_water)
+        through_air = self.in_dry_air / polysilicon.in_dry_air * by_water / combined
+        return BesideWater(through_water, through_air, self.modulus / polysilicon.modulus * by_water)
 
 
 def _modulus(material):

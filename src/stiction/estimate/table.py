@@ -15,6 +15,8 @@ from pathlib import Path
 from typing import Any
 
 FILE = Path(__file__).with_name("table.json")
+#: Names of the changes on other solids, by `stiction.estimate.solids.BesideWater.logarithms`.
+CHANGES = ("attraction", "attraction_through_air", "stiffness")
 
 
 @dataclass(frozen=True)
@@ -50,6 +52,11 @@ class Surrogate:
         """Numbers of the coordinates beyond the design."""
         ends = zip(self.columns, chosen, self.low, self.high, strict=True)
         return tuple(k for k, x, low, high in ends if not low <= x <= high)
+
+
+def processes(section: Mapping[str, Any], *names: str) -> tuple[Surrogate, ...]:
+    """Processes of a part of the table by name, then its changes on other solids."""
+    return tuple(Surrogate(**section[name]) for name in (*names, *CHANGES))
 
 
 @dataclass(frozen=True)

@@ -1,11 +1,13 @@
-r"""Lengths that tips hold at a voltage, by the closed form that a run takes for them. Plain Python, SI units.
+r"""Lengths and forces at a voltage, by the closed forms that a run takes for them. Plain Python, SI units.
 
 With :math:`\Gamma_V = \frac{\epsilon_0 V^2}{2} (1/D - 1/(D + h))` of flats at the distance D of the dielectric, lengths
 L without and :math:`L_V` with voltage,
 
 .. math:: L_V^{-4} = L^{-3} L_V^{-1} + d , \quad d = \frac{8 \Gamma_V}{3 E t^3 h^2} ,
 
-see `stiction.life.holding`.
+see `stiction.life.holding`. Forces F of stoppers grow by that on flats of their area A,
+
+.. math:: F_V = F + \frac{\epsilon_0 V^2 A}{2 D^2} .
 """
 
 import math
@@ -30,9 +32,20 @@ def energy_of(device: Mapping, gap: float) -> float:
     """Energy Γ_V that the voltage of a device adds over its gap [m] [J m⁻²], zero without one."""
     if not (potential := potential_of(device)):
         return 0.0
-    dielectric = device["dielectric"]
-    distance = to_si(dielectric["thickness_nm"], "nm") / dielectric["permittivity"]
+    distance = _distance_of(device)
     return VACUUM_PERMITTIVITY * potential**2 / 2 * (1 / distance - 1 / (distance + gap))
+
+
+def tension_of(device: Mapping) -> float:
+    """Tension that the voltage of a device adds on flats in contact [Pa], zero without one."""
+    potential = potential_of(device)
+    return VACUUM_PERMITTIVITY * (potential / _distance_of(device)) ** 2 / 2 if potential else 0.0
+
+
+def _distance_of(device):
+    """Gap D of air of the same capacity as the dielectric of a device [m]."""
+    dielectric = device["dielectric"]
+    return to_si(dielectric["thickness_nm"], "nm") / dielectric["permittivity"]
 
 
 def drive_of(energy: float, stiffness: float, gap: float) -> float:
@@ -81,3 +94,19 @@ class Driven:
     def bare(self, length: float) -> float:
         """Length without the voltage, as `without_voltage` [m]."""
         return without_voltage(length, self.drive)
+
+
+@dataclass(frozen=True)
+class Pulled:
+    """Stopper at a voltage."""
+
+    added: float  #: force of the voltage on flats of its area, zero without one [N]
+
+    def length(self, bare: float) -> float:
+        """Reciprocal of the force at the voltage, from that without one [1/N]."""
+        return bare / (1 + self.added * bare)
+
+    def bare(self, length: float) -> float:
+        """Reciprocal of the force without the voltage, infinite where the voltage alone holds it [1/N]."""
+        rest = 1 - self.added * length
+        return length / rest if rest > 0 else math.inf

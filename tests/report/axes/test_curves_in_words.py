@@ -11,7 +11,13 @@ from matplotlib.text import Text
 
 from stiction.report.axes import figures
 from stiction.report.axes.labels import Label, put
-from stiction.report.axes.roughness import crossings_of, ranges_of, smoother_than_known, sure_in_short
+from stiction.report.axes.roughness import (
+    crossings_of,
+    flats_suffice,
+    ranges_of,
+    smoother_than_known,
+    sure_in_short,
+)
 from stiction.report.style import BUILD, panels, png
 from stiction.run.stored_limits import as_text
 from stiction.stages.axes.requirement import SMOOTHER
@@ -252,7 +258,7 @@ def test_surfaces_smoother_than_those_with_full_contact_are_veiled(flagged):
     found = found.assign(flagged=flags, given=6e-9)
     ends = sorted((places[flagged[0]], 6.0)) if flagged else None
     assert smoother_than_known(found) == (ends and pytest.approx(tuple(ends)))
-    shown = "full contact unknown here, unsafe" in entries(figures.roughness(found))
+    shown = "full contact unknown: more stick than drawn" in entries(figures.roughness(found))
     assert shown == bool(flagged)
 
 
@@ -268,3 +274,53 @@ def test_nothing_is_sure_beyond_the_given_surface_where_full_contact_is_unknown(
     said = next(text for text in shown if text.startswith("RH 0.6"))
     assert words in said
     assert ("to 6 nm" in said) == (flagged == (-1,)), "flags are at the other side"
+    assert ("estimate 4" in said) == (flagged != (0,)), "the place of the estimate is known"
+    crossings = crossings_of(found.assign(flagged=flags, given=6e-9), 0.6, "force")
+    assert crossings.sizes["crossing"] == (flagged != (0,))
+
+
+@pytest.mark.parametrize("bound", [np.nan, 0.9, 1.1])
+def test_everything_is_enough_where_even_flat_surfaces_suffice_unless_a_tip_holds(bound):
+    found, flags = of_cantilever(), of_cantilever().flagged.astype(object)
+    flags[{"roughness": 0}] = flags[{"roughness": 1}] = as_text([SMOOTHER])
+    found = found.assign(
+        flagged=flags, given=found.roughness[2].item(), bound=found.estimate * 0 + bound * found.required
+    )
+    suffice = {shape: flats_suffice(found, shape) for shape in (S_SHAPE, EITHER)}
+    assert suffice == {S_SHAPE: bound > 1, EITHER: False}
+    decides, alone = figures.roughness(found).axes
+    said = " ".join(text.get_text().replace("\n", " ") for text in alone.texts)
+    assert ("enough everywhere" in said) == (bound > 1)
+    assert ("enough from 2 nm" in said) == (not bound > 1)
+    veils = [[one for one in panel.patches if one.get_label().startswith("full contact")] for panel in (decides, alone)]
+    assert [len(veil) for veil in veils] == [1, not bound > 1]
+    (start,) = {text.xy[0] for text in alone.texts}
+    given = alone.transAxes.inverted().transform(alone.transData.transform((2, 1)))[0]
+    assert start == pytest.approx(given, abs=0.03), "clear of the veil"
+
+
+def mapped(smoothest):
+    """Panel of a map at RH 0.6, in which full contact is unknown below some rms [nm], and its given rms [nm]."""
+    found = rough(others=(0.0, -0.5, 0.5))
+    flags, places = found.flagged.astype(object), 1e9 * found.roughness.values
+    for k in np.flatnonzero(places < smoothest):
+        flags[{"roughness": k}] = as_text([SMOOTHER])
+    given = places[places >= smoothest][0]
+    return figures.roughness_map(found.assign(flagged=flags, given=1e-9 * given)).axes[1], given
+
+
+def test_a_map_hides_what_the_estimate_alone_meets_where_full_contact_is_unknown():
+    panel, given = mapped(4.6)
+    label = "full contact unknown: can stick"
+    (area,) = [one for one in panel.collections if one.get_zorder() == pytest.approx(2.1)]
+    clip = area.get_clip_path().get_fully_transformed_path()
+    for rms, hidden in ((3.0, False), (given - 0.2, True), (given + 0.2, False)):  # the estimate meets it from 4 on
+        inside = any(path.contains_point((rms, 0.0)) for path in area.get_paths())
+        assert (inside and clip.contains_point(panel.transData.transform((rms, 0.0)))) == hidden, rms
+    dashed = max((one for one in panel.collections if one.get_linestyle()[0][1]), key=lambda one: one.get_zorder())
+    assert min(path.vertices[:, 0].min() for path in dashed.get_paths()) >= given - 1e-6, "nothing hidden is sure"
+    assert "unknown" in [text.get_text() for text in panel.texts]
+    assert label in panel.get_legend_handles_labels()[1]
+    known, _ = mapped(0.5)
+    assert label not in known.get_legend_handles_labels()[1], "a control"
+    assert "unknown" not in [text.get_text() for text in known.texts]

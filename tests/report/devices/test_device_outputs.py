@@ -214,7 +214,12 @@ def test_the_sizes_to_build_are_in_the_panel_of_the_own_gap_and_of_all_that_hold
     answer = answer_in({0.4: 90e-6, 0.6: np.nan, 0.5: 81e-6}, forbidden=forbidden)
     panels = figures_devices.chart(CHARTS, STEEP, {"C1": (2e-6, gap, answer)}).axes
     marked = {panel.get_title(loc="left"): found for panel in panels if any((found := diamonds(panel)).values())}
-    shown = {"(c) C1, gap 20 µm, beam or tip": {False: [(0.5, pytest.approx(80))], True: [(0.4, pytest.approx(90))]}}
+    shown = {
+        "(c) C1, gap 20 µm, beam or tip: build\ndiamonds": {
+            False: [(0.5, pytest.approx(80))],
+            True: [(0.4, pytest.approx(90))],
+        }
+    }
     assert marked == (shown if gap == 20e-6 and not forbidden else {})
 
 
@@ -222,13 +227,62 @@ def test_the_sizes_to_build_are_in_the_panel_of_the_own_gap_and_of_all_that_hold
 def test_a_line_leads_to_a_size_to_build_from_the_limit_of_the_own_thickness(thickness, limits):
     answer = answer_in({0.4: 90e-6, 0.5: 81e-6})
     panel = figures_devices.chart(CHARTS, STEEP, {"C1": (thickness, 20e-6, answer)}).axes[2]
-    lines = [line.get_xydata() for line in panel.lines if to_hex(line.get_color()) == BUILD.lower()]
-    lines = [line for line in lines if len(line) == 2]
+    lines = [line.get_xydata() for line in panel.lines if line.get_label() == FROM_LIMIT]
     expected = [[(rh, size), (rh, top)] for rh, size, top in zip((0.4, 0.5), (90, 80), limits, strict=False)]
     assert len(lines) == len(limits)
     np.testing.assert_allclose(lines, np.reshape(expected, np.shape(lines)))
-    numbers = [text.get_text() for text in panel.texts if to_hex(text.get_color()) == BUILD.lower()]
-    assert numbers == ["90", "80"]
+    numbers = [text.get_text() for text in sizes_in(panel)]
+    assert numbers == ["90", "80, but 70 µm if\nwater dries on it"]
+
+
+FROM_LIMIT = "from the limit of the thickness of C1 to its size"
+
+
+def sizes_in(panel):
+    """Words on sizes to build in a panel."""
+    return [text for text in panel.texts if to_hex(text.get_color()) == BUILD.lower()]
+
+
+def crossed(panel, text):
+    """Number of lines of a panel that run through a text."""
+    box, count = text.get_window_extent(), 0
+    for line in (line for line in panel.lines if len(line.get_xdata())):
+        points = line.get_transform().transform(line.get_xydata())
+        fine = np.concatenate(
+            [np.linspace(one, other, 200) for one, other in zip(points, points[1:], strict=False)] or [points]
+        )
+        count += bool(box.count_contains(fine))
+    return count
+
+
+@pytest.mark.parametrize("sizes", [(100e-6, 95e-6), (160e-6, 60e-6), (199e-6, 106e-6)])
+def test_words_on_a_size_to_build_are_on_no_line_and_beside_its_own(sizes):
+    answer = answer_in({0.4: sizes[0], 0.5: sizes[1]}, build=sizes[1])
+    panel = figures_devices.chart(CHARTS, STEEP, {"C1": (2e-6, 20e-6, answer)}).axes[2]
+    for text, at, size, limit in zip(sizes_in(panel), (0.4, 0.5), sizes, (214, 107), strict=True):
+        assert crossed(panel, text) == 0
+        box = text.get_window_extent().transformed(panel.transData.inverted())
+        apart = np.abs(text.get_window_extent().intervalx - panel.transData.transform((at, size))[0])
+        assert 72 * apart.min() / panel.figure.dpi == pytest.approx(5, abs=1), "points"
+        poles = [line.get_ydata() for line in panel.lines if line.get_linewidth() < 0.7 and line.get_xdata()[0] == at]
+        poles = [pole for pole in poles if pole[0] == pytest.approx(limit)]
+        assert len(poles) == (box.y0 > limit), "a pole leads up to words above the limit"
+        assert poles or 1e6 * size < (box.y0 + box.y1) / 2 < limit or box.y1 < 1e6 * size
+    text.set(position=(0, 0), ha="center", va="center")
+    text.xy = 0.45, np.interp(0.45, (0.4, 0.5), (214, 107))
+    assert crossed(panel, text), "a control"
+
+
+def test_words_on_a_size_to_build_are_below_it_where_nothing_is_clear():
+    figure = figures_devices.chart(CHARTS, STEEP)
+    panel = figure.axes[2]
+    for length in np.linspace(*panel.get_ylim(), 200):
+        panel.axhline(length)
+    figures_devices._name_size(panel, "90", 0.5, (90, 107))
+    (text,) = sizes_in(panel)
+    box = text.get_window_extent().transformed(panel.transData.inverted())
+    assert box.y1 < 90
+    assert not [line for line in panel.lines if to_hex(line.get_color()) == BUILD.lower()], "no pole"
 
 
 def test_the_size_to_build_is_named_with_the_stricter_ones_below_the_panels():

@@ -187,10 +187,9 @@ class _Kind(NamedTuple):
 
 #: Kinds of devices that options state.
 _CANTILEVER = _Kind("cantilever", of_numbers, ("thickness", "gap"), {"force": "stoppers"})
-_OF_CANTILEVERS = dict.fromkeys(("voltage", "dielectric"), "cantilevers")
-_BRIDGE = _Kind("bridge", of_middle, ("thickness", "gap"), _CANTILEVER.strange | _OF_CANTILEVERS)
+_BRIDGE = _Kind("bridge", of_middle, ("thickness", "gap"), _CANTILEVER.strange)
 _OF_BEAMS = dict.fromkeys(("thickness", "gap", "length"), "beams") | {"stress": "bridges"}
-_STOPPER = _Kind("stopper", of_area, ("contact",), _OF_BEAMS | _OF_CANTILEVERS)
+_STOPPER = _Kind("stopper", of_area, ("contact",), _OF_BEAMS)
 
 
 def _kind_of(arguments):

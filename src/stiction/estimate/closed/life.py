@@ -58,7 +58,7 @@ class SquareElectrode:
         With :math:`s = \sqrt A` and the way u to the distance l = g - u, `stiction.life.touch.stopper_voltage_at_once`
         is the largest of
 
-        .. math:: V^2 = \frac{k u^2}{\epsilon_0} \Big/ \int_l^g \Bigl( \frac{s}{x} + \frac{4}{\pi} \Bigr)^2 dx .
+        .. math:: V^2 = \frac{k u^2}{\epsilon_0} / \int_l^g \Bigl( \frac{s}{x} + \frac{4}{\pi} \Bigr)^2 dx .
 
         Examples
         --------

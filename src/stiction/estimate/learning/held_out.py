@@ -34,7 +34,7 @@ from stiction.estimate.learning.other_solids.points import RANGES, TEMPERATURES
 from stiction.estimate.length import NotLearnt
 from stiction.estimate.promise import kept
 from stiction.estimate.question import questions
-from stiction.estimate.table import Surrogate, content, known
+from stiction.estimate.table import Surrogate, content, known, processes
 from stiction.rounding import bounding
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.opening import EITHER, MIDDLE
@@ -82,10 +82,10 @@ _OF_SOLIDS = (
     "of other solids are, as all intervals. The control takes them as polysilicon that water wets perfectly:"
 )
 _OTHER_BRIDGES = (
-    "Forces of other solids err to the unsafe side on average, within their intervals: the estimate takes attraction "
-    "through air, beyond the film, to follow from that through water. Intervals of bridges of other solids are wider "
-    "by the larger of both factors. No such bridge was tested in full contact. In dry air other moduli are exactly "
-    "similar, and intervals are those above."
+    "Three changes of other solids are learnt: by their attraction through water, by that through air, and by their "
+    "stiffness, each beside that of the water. Intervals of bridges of other solids are wider by the larger of both "
+    "factors. No such bridge was tested in full contact. In dry air other moduli are exactly similar, and intervals "
+    "are those above."
 )
 _FORCES_IN_DRY_AIR = "Forces in dry air, beside patches changed by {} strips of 3 µm in full contact:"
 
@@ -111,8 +111,8 @@ def _of_polysilicon(folder, table):
         (_IN_DRY_AIR.format(*CONSTANTS, of_tips), dry_rows.tested, dry, "tips"),
         (_FORCES_IN_DRY_AIR.format(of_patches), dry_rows.tested_forces, dry["stoppers"], "forces"),
     ):
-        processes = [Surrogate(**errors[name]) for name in (first, "full")]
-        learnt = table["modulus"], errors["tested_score"], lambda _, learnt_processes=processes: learnt_processes
+        both = [Surrogate(**errors[name]) for name in (first, "full")]
+        learnt = table["modulus"], errors["tested_score"], lambda _, both=both: both
         yield words, _rows_of(SETS, errors, lambda name, test=test, learnt=learnt: test(folder, name, *learnt))
 
 
@@ -123,7 +123,7 @@ def _of_other_solids(folder, table):
         ("Lengths", of_solids.tested, table, "tips"),
         ("Forces", of_solids.tested_forces, table["stoppers"], "forces"),
     ):
-        learnt = errors["tested_score"], [Surrogate(**errors[name]) for name in (first, "full", "attraction")]
+        learnt = errors["tested_score"], processes(errors, first, "full")
         wider = {**errors, "margins": errors[OF_OTHER_SOLIDS]}
 
         def found(name, as_polysilicon=False, test=test, learnt=learnt):

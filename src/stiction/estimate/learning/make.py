@@ -5,7 +5,7 @@ python -m stiction.estimate.learning.make FOLDER
 
 import json
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -26,8 +26,10 @@ from stiction.estimate.learning.bridges import plan_of as plan_of_bridge
 from stiction.estimate.learning.design import FILMS, SurfaceLaw
 from stiction.estimate.learning.design import SIDES as SIDES_OF_PATCHES
 from stiction.estimate.learning.errors import Tested, margins_of, rest_of, scores, tested, tested_bridges, tested_forces
-from stiction.estimate.learning.fit import DesignRows, Fitted, fitted, group, rounded
+from stiction.estimate.learning.fit import Fitted, fitted, group, rounded
 from stiction.estimate.learning.other_solids import rows as of_solids
+from stiction.estimate.learning.other_solids.ratios import ALL
+from stiction.estimate.learning.other_solids.rows import RowsOfRatio
 from stiction.estimate.learning.rows import (
     OF_FULL,
     OF_RATIO,
@@ -39,7 +41,7 @@ from stiction.estimate.learning.rows import (
 from stiction.estimate.learning.training import SETS, TrainingTips, air_of, base, full_contact_of, plan_of, water_of
 from stiction.estimate.length import normal_score
 from stiction.estimate.state import COORDINATES, OF_PATCHES
-from stiction.estimate.table import FILE, Surrogate
+from stiction.estimate.table import CHANGES, FILE, Surrogate, processes
 from stiction.models import SIDES
 from stiction.progress import without_progress
 from stiction.run.atomic import save_text
@@ -68,7 +70,7 @@ def table_of(folder: Path) -> dict[str, Any]:
         "coordinates": COORDINATES,
         "tips": tips.content,
         "full": full.content,
-        "attraction": attraction_of(of_solids.rows_of_tips(folder, modulus), of_solids.OF_TIPS_ATTRACTED),
+        **changes_of(of_solids.rows_of_tips, folder, modulus),
         "stoppers": stoppers_of(folder, modulus),
         "bridges": bridges_of(folder, modulus),
         "dry": in_dry_air(folder, modulus),
@@ -100,9 +102,11 @@ def in_dry_air(folder: Path, modulus: float) -> dict[str, Any]:
     return section | errors_of(dry_rows.tested, folder, modulus, tips, full)
 
 
-def attraction_of(rows: DesignRows, columns: Sequence[int]) -> dict[str, Any]:
-    """Process of the change of lengths or forces by the attraction of other solids."""
-    return fitted(rows, "at_2", columns, 90).content
+def changes_of(rows_of: Callable[..., RowsOfRatio], folder: Path, modulus: float) -> dict[str, Any]:
+    """Processes of the changes of lengths or forces by the ratios of other solids."""
+    learnt = (rows_of(folder, modulus, ratio) for ratio in ALL)
+    changes = (fitted(each.rows, "at_2", each.columns, 90).content for each in learnt)
+    return dict(zip(CHANGES, changes, strict=True))
 
 
 def stoppers_of(folder: Path, modulus: float) -> dict[str, Any]:
@@ -110,8 +114,7 @@ def stoppers_of(folder: Path, modulus: float) -> dict[str, Any]:
     forces = fitted(rows_of_patches(folder, "learn", modulus), "at_2", range(len(OF_PATCHES)))
     full = fitted(rows_of_ratios(folder, "learn", modulus), "ratio", OF_RATIO, 90)
     section = {"sides": SIDES_OF_PATCHES, "coordinates": OF_PATCHES, "forces": forces.content, "full": full.content}
-    rows = of_solids.rows_of_patches(folder, modulus)
-    section |= {"attraction": attraction_of(rows, of_solids.OF_PATCHES_ATTRACTED)}
+    section |= changes_of(of_solids.rows_of_patches, folder, modulus)
     return section | errors_of(tested_forces, folder, modulus, forces, full)
 
 
@@ -125,8 +128,8 @@ def bridges_of(folder: Path, modulus: float) -> dict[str, Any]:
         "coordinates": OF_BRIDGES,
         "middle": middle.content,
         "full": full.content,
-        "attraction": attraction_of(of_solids.rows_of_bridges(folder, modulus), of_solids.OF_BRIDGES_ATTRACTED),
     }
+    section |= changes_of(of_solids.rows_of_bridges, folder, modulus)
     return section | errors_of(tested_bridges, folder, modulus, middle, full)
 
 
@@ -220,9 +223,9 @@ def margins_of_other_solids(folder: Path, table: Mapping[str, Any]) -> dict[str,
 
 def _growth(test, folder, section, first):
     """Factors of the margins of a section of the table on other solids, by confidence."""
-    processes = [Surrogate(**rounded(section[name])) for name in (first, "full", "attraction")]
+    learnt = processes(rounded(section), first, "full")
     sets = [f"decide_{law}" for law in (SurfaceLaw.TYPICAL, SurfaceLaw.ANY)]
-    surfaces = [surface for name in sets for surface in test(folder, name, TESTED, processes, as_polysilicon=False)]
+    surfaces = [surface for name in sets for surface in test(folder, name, TESTED, learnt, as_polysilicon=False)]
     of_others, margins = margins_of(scores(surfaces, section["rest"])), section["margins"]
     return {name: max(1.0, of_others[name] / margin) for name, margin in margins.items()}
 

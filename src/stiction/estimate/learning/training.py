@@ -92,6 +92,12 @@ def plan_of(point: Point, base: dict[str, Any]) -> Plan:
     return Plan(base | {"surfaces": surfaces, "pairs": pairs, "devices": {DEVICE: device}})
 
 
+def of_beam(point: Point, material: dict[str, Any], valid: dict[str, Any]) -> Point:
+    """Point of which `plan_of` finds a gap for its stiffness and a beam of a material, in the units of files."""
+    relative = material["young_modulus_GPa"] / valid["solid"]["young_modulus_GPa"]
+    return replace(point, stiffness=point.stiffness / relative)
+
+
 def with_materials(plan: Plan, *materials: dict[str, Any]) -> Plan:
     """Plan of a point with the materials of both solids, in the units of files."""
     named = {f"Of{side}": material for side, material in zip("ST", materials, strict=True)}

@@ -15,7 +15,14 @@ from stiction.contact.air import Air
 from stiction.devices.risk import one_in
 from stiction.report.axes.axis import axes_of
 from stiction.report.axes.labels import Label, put
-from stiction.report.axes.roughness import crossings_of, ranges_of, smoother_than_known, sure_in_short
+from stiction.report.axes.roughness import (
+    crossings_of,
+    flats_suffice,
+    is_unknown,
+    ranges_of,
+    smoother_than_known,
+    sure_in_short,
+)
 from stiction.report.format import TO_NM, TO_UM
 from stiction.report.style import (
     BUILD,
@@ -55,6 +62,8 @@ _WITHIN_A_DECADE = (1, 1.5, 2, 3, 4, 6, 8)
 _WIDE, _HIGH = 3.4, 2.8
 #: Line along the required value where it is sure.
 _SURE = {"linewidth": 3.5, "alpha": 0.6}
+#: Colour of surfaces whose full contact is unknown, and least value between these and others.
+_UNKNOWN, _LEAST = "0.85", 1e-6
 #: Colour of the best setting where none suffices.
 _NOT_ENOUGH = "0.4"
 #: Part of a panel of a process that is free of curves at its bottom and its top.
@@ -81,16 +90,18 @@ def roughness(dataset: xr.Dataset) -> Figure:
     curves = curves_of(dataset)
     as_given = (curve for curve in curves if "other" not in curve.coords or curve.other == curve.other_given)
     curve = next(as_given)
-    roughness_as_given = axes_of(curve)[0].in_unit(float(curve.given))
+    axis, given = axes_of(curve)[0], float(curve.given)
 
     def marks(panel, shape):
         """The given roughness, what a dash means at any humidity, and the crossings in words."""
-        panel.axvline(roughness_as_given, color="0.6", linestyle=":", label="as given")
-        _veil(panel, curve, color="0.9", zorder=-1)
+        panel.axvline(axis.in_unit(given), color="0.6", linestyle=":", label=f"as given: {axis.at(given)}")
+        if not flats_suffice(curve, shape):
+            _veil(panel, curve, alpha=0.65, zorder=2.5, label="full contact unknown: more stick than drawn")
         panel.plot([], [], "_", color="0.3", markersize=8, label="simulated limit")
         sure = "sure, exact inputs: simulated limit meets it, 95 %"
         panel.plot([], [], color="0.3", **_SURE, solid_capstyle="butt", label=sure)
-        panel.plot([], [], "o", color="0.3", fillstyle="none", label="estimate meets it, bar: two-sided 95 %")
+        if any(crossings_of(curve, humidity, shape).sizes["crossing"] for humidity in curve.humidity.values):
+            panel.plot([], [], "o", color="0.3", fillstyle="none", label="estimate meets it, bar: two-sided 95 %")
         return _crossings(curve, shape)
 
     return _curves(curve, _simulated, marks, "dashes {side} it release")
@@ -99,7 +110,7 @@ def roughness(dataset: xr.Dataset) -> Figure:
 def _veil(panel, data, **style):
     """Mark surfaces that are smoother than the smoothest one with full contact, where they are on the unsafe side."""
     if ends := smoother_than_known(data):
-        panel.axvspan(*ends, linewidth=0, label="full contact unknown here, unsafe", **style)
+        panel.axvspan(*ends, color=_UNKNOWN, linewidth=0, **style)
 
 
 @styled
@@ -206,7 +217,7 @@ def _crossings(curve, shape):
             labels.append(Label(text, colour, axis.in_unit(crossing)))
         margin = margins_of(curve.sel(humidity=humidity, shape=shape))
         if not len(places) and (margin > 0).any():
-            nearest = int(np.nanargmin(np.abs(margin)))
+            nearest = int(np.nanargmin(np.where(is_unknown(curve.sel(humidity=humidity)), np.inf, np.abs(margin))))
             elsewhere.setdefault((nearest, sure), {})[air] = colour
     for (nearest, sure), colours in elsewhere.items():
         text = textwrap.fill(f"{', '.join(colours)}: {sure}", _LONGEST)
@@ -294,12 +305,12 @@ def roughness_map(data: xr.Dataset) -> Figure:
     for row, humidity in zip(axes, humidities, strict=True):
         for panel, shape in zip(row, shapes, strict=True):
             curve = data.sel(humidity=humidity, shape=shape).transpose("other", "roughness", ...)
-            _filled(panel, data, (margins_of(curve), margins_of(curve, "safe")), sought_of(data).ratio)
+            unknown, margin = is_unknown(curve).values, margins_of(curve)
+            safe = np.where(unknown, np.nan, margins_of(curve, "safe"))
+            _filled(panel, data, (margin, safe), sought_of(data).ratio)
+            _hide(panel, data, margin, unknown)
             as_given = along.in_unit(float(data.given)), across.in_unit(float(data.other_given))
-            panel.plot(*as_given, "k+", markersize=8, linestyle="none", label="surface as given")
-            ends = panel.get_xlim()
-            _veil(panel, data, color="0.85", alpha=0.6)
-            panel.set_xlim(ends)
+            panel.plot(*as_given, "k+", markersize=8, linestyle="none", zorder=3, label="surface as given")
     letter(axes, [f"{by}{Air(humidity).words}" for humidity in humidities for by in _held_by(shapes, ", ")])
     legend_outside(figure, handles(*axes.flat), "lower", 2)
     return figure
@@ -332,7 +343,7 @@ def _filled(panel, computed, margins, label, shown=None):
     lines = (("-", "estimate meets the requirement"), ("--", "with 95 % confidence too"))
     for values, (line, words) in zip(margins, lines, strict=True):
         if np.nanmin(values, initial=np.inf) < 0 < np.nanmax(values, initial=-np.inf):
-            panel.contour(x, y, np.ma.masked_invalid(values), [0], colors="black", linestyles=line)
+            panel.contour(x, y, np.ma.masked_invalid(values), [0], colors="black", linestyles=line, zorder=2.2)
             panel.plot([], [], line, color="black", label=words)
     axes = axes_of(computed)
     points = np.meshgrid(*(axis.in_unit(axis.values) for axis in axes))
@@ -357,11 +368,31 @@ def _hatch(panel, x, y, margin, safe):
     safe = np.where(np.isnan(safe), -np.abs(margin), safe)
     if np.nanmax(margin, initial=-np.inf) <= 0 or np.nanmin(safe, initial=np.inf) >= 0:
         return
-    sufficient = panel.contourf(x, y, np.ma.masked_invalid(margin), [0, np.inf], colors="none")
     unsure = panel.contourf(x, y, np.ma.masked_invalid(safe), [-np.inf, 0], colors="none", hatches=["////"])
-    unsure.set_clip_path(sufficient.get_paths()[0], panel.transData)
+    _clip(panel, unsure, x, y, margin)
     entry = {"facecolor": "none", "edgecolor": "black", "linewidth": 0, "label": "met without 95 % confidence"}
     panel.add_patch(Rectangle((x[0], y[0]), 0, 0, hatch="////", **entry))
+
+
+def _clip(panel, area, x, y, margin):
+    """Clip an area of a map to where the estimate meets the requirement."""
+    sufficient = panel.contourf(x, y, np.ma.masked_invalid(margin), [0, np.inf], colors="none")
+    area.set_clip_path(sufficient.get_paths()[0], panel.transData)
+
+
+def _hide(panel, data, margin, unknown):
+    """Hide where the estimate meets the requirement, but full contact, in which more stick, is unknown (n, m)."""
+    hidden = unknown & (margin > 0)
+    if not hidden.any():
+        return
+    x, y = (axis.in_unit(axis.values) for axis in axes_of(data))
+    area = panel.contourf(x, y, unknown, [_LEAST, 1], colors=[_UNKNOWN], zorder=2.1)
+    _clip(panel, area, x, y, margin)
+    entry = {"facecolor": _UNKNOWN, "linewidth": 0, "label": "full contact unknown: can stick"}
+    panel.add_patch(Rectangle((x[0], y[0]), 0, 0, **entry))
+    points = panel.transData.transform(np.stack(np.meshgrid(x, y), axis=-1)[hidden])
+    middle = panel.transData.inverted().transform(points.mean(axis=0))
+    panel.text(*middle, "unknown", ha="center", va="center", fontsize=7, zorder=3)
 
 
 # Laws

@@ -87,7 +87,7 @@ def _write(panel, height, label, room):
     panel.annotate(
         label.text,
         (room.low if room.starts else room.high, height + (room.away if room.above else -room.away)),
-        (0, 2 if room.above else -2),
+        (0, 4 if room.above else -4),
         xycoords="axes fraction",
         textcoords="offset points",
         ha="left" if room.starts else "right",

@@ -7,10 +7,13 @@ from stiction.devices.risk import VERIFIED, one_in, samples_for
 from stiction.report.axes.axis import Axis, axes_of, notes, subjects
 from stiction.report.format import UM, airs, fraction_with_band
 from stiction.run.stored_limits import of_text
-from stiction.stages.axes.requirement import SMOOTHER, sought_of
+from stiction.stages.axes.requirement import SMOOTHER, margins_of, sought_of
 from stiction.stages.axes.roughness import KURTOSIS, OF_COPIES, curves_of
 from stiction.stages.devices.end_states import END_STATES
+from stiction.stages.devices.opening import MIDDLE, S_SHAPE
 
+#: End states that no surface holds below the bound of flat ones. Tips can be held below it.
+_BOUNDED = (S_SHAPE, MIDDLE)
 #: Standard errors beyond which two forces count as different.
 DIFFERENT = 3
 
@@ -139,8 +142,14 @@ def _stuck_as_given(curve, humidity, shape):
 
 
 def crossings_of(curve: xr.Dataset, humidity: float, shape: str) -> xr.Dataset:
-    """Crossings of a curve with its required value, at a humidity and against one end state."""
-    return _rows(curve, "crossing", humidity, shape)
+    """Crossings of a curve with its required value, at a humidity and against one end state.
+
+    There are none where full contact is unknown on the unsafe side.
+    """
+    rows = _rows(curve, "crossing", humidity, shape)
+    if (ends := _unknown(curve)) is None:
+        return rows
+    return rows.isel(crossing=(rows.crossing_place.values < ends[0]) | (rows.crossing_place.values > ends[1]))
 
 
 def smoother_than_known(data: xr.Dataset) -> tuple[float, float] | None:
@@ -148,28 +157,45 @@ def smoother_than_known(data: xr.Dataset) -> tuple[float, float] | None:
 
     They lead from the smoothest surface to the given one.
     """
+    if (ends := _unknown(data)) is None:
+        return None
+    low, high = sorted(map(float, map(axes_of(data)[0].in_unit, ends)))
+    return low, high
+
+
+def _unknown(data):
+    """Ends as of `smoother_than_known` [SI]."""
     if (furthest := _smoothest_unknown(data)) is None:
         return None
-    low, high = sorted(map(float, map(axes_of(data)[0].in_unit, (furthest, float(data.given)))))
-    return low, high
+    return tuple(sorted((furthest, float(data.given))))
+
+
+def is_unknown(data: xr.Dataset) -> xr.DataArray:
+    """Whether full contact is unknown on the unsafe side at each point, of the dimensions of its flags."""
+    return xr.apply_ufunc(np.vectorize(lambda flag: SMOOTHER in of_text(flag), otypes=[bool]), data.flagged)
 
 
 def _smoothest_unknown(data):
     """Roughness of the smoothest surface whose full contact is unknown on the unsafe side, none if all is known."""
     over_others = [dim for dim in data.flagged.dims if dim != "roughness"]
-    flags = xr.apply_ufunc(np.vectorize(lambda flag: SMOOTHER in of_text(flag), otypes=[bool]), data.flagged)
-    places = data.roughness.values[flags.any(over_others).values]
+    places = data.roughness.values[is_unknown(data).any(over_others).values]
     return places[np.argmax(np.abs(places - float(data.given)))] if places.size else None
+
+
+def flats_suffice(curve: xr.Dataset, shape: str) -> bool:
+    """Whether even flat surfaces meet the requirement against an end state at all humidities, in any contact."""
+    return shape in _BOUNDED and bool((margins_of(curve.sel(shape=shape), "bound") >= 0).all())
 
 
 def ranges_of(curve: xr.Dataset, humidity: float, shape: str) -> np.ndarray:
     """Ranges of a curve in which its simulated limit meets the requirement, as `crossings_of`, (n, 2).
 
-    They end at the given surface where full contact of smoother ones is unknown on the unsafe side.
+    They end at the given surface where full contact of smoother ones is unknown on the unsafe side, unless even flat
+    surfaces meet the requirement.
     """
     rows = _rows(curve, "range", humidity, shape)
     ranges = np.stack([rows.range_low, rows.range_high], axis=-1)
-    if (unknown := _smoothest_unknown(curve)) is None:
+    if (unknown := _smoothest_unknown(curve)) is None or flats_suffice(curve, shape):
         return ranges
     end = float(curve.given)
     clipped = np.clip(ranges, *((end, None) if unknown < end else (None, end)))

@@ -53,7 +53,9 @@ _PANEL, _ENTRY = 3.3, 0.12
 #: Mean width of a character of a title, or below a figure [in].
 _CHARACTER = 0.05
 #: Label of the lengths of a chart.
-_OF_CHART = "simulated limit: one touchdown,\ninputs exact (not to build) [µm]"
+_OF_CHART = "length [µm]; lines: simulated limit,\none touchdown, exact inputs (not to build)"
+#: End of the title of a panel with sizes to build.
+_BUILD_THESE = ": build diamonds"
 #: Points of a curve between computed humidities.
 _POINTS = 200
 #: Space above the longest curve of a chart, in units of the range of its lengths.
@@ -185,6 +187,7 @@ def chart(
         for at in product(dataset.gap.values, dataset["shape"].values[::-1])
     ]
     figure, columns, lines = columns_of_panels(len(subjects), 1, at_most_double(1.5 * SINGLE), _PANEL)
+    built: dict[Axes, list] = {}
     for panel, (name, gap, shape) in zip(columns[:, 0], subjects, strict=True):
         curves = wholes[name].sel(gap=gap, shape=shape)
         thickness, own_gap, answer = (answers or {}).get(name, (np.nan, np.nan, None))
@@ -192,7 +195,7 @@ def chart(
         is_its_own = has_its_gap & np.isclose(curves.thickness, thickness, rtol=1e-6, atol=0)
         _thicknesses(panel, curves, shape, placed[name], is_its_own)
         if has_its_gap and not END_STATES[shape].only_if:
-            _mark_sizes_to_build(panel, _limits(curves.isel(thickness=is_its_own)), answer, placed[name])
+            built[panel] = _mark_sizes_to_build(panel, _limits(curves.isel(thickness=is_its_own)), answer, placed[name])
         low, high = panel.dataLim.intervaly
         panel.set(xlabel="relative humidity [–]", ylabel=_OF_CHART, ylim=(0.95 * low, high + _ROOM * (high - low)))
         humidity_axis(panel, placed[name])
@@ -204,12 +207,19 @@ def chart(
             for thickness, is_own in zip(curves.thickness.values, is_its_own, strict=True)
         ]
         _name_thicknesses(panel, curves, marks)
-    titles = [f"{name}, gap {TO_UM * gap:g} µm, {END_STATES[shape].title}" for name, gap, shape in subjects]
+    titles = [
+        f"{name}, gap {TO_UM * gap:g} µm, {END_STATES[shape].title}{_BUILD_THESE * bool(built.get(panel))}"
+        for panel, (name, gap, shape) in zip(columns[:, 0], subjects, strict=True)
+    ]
     letter_lines(lines, [_filled(title, figure, lines[0].shape[1]) for title in titles])
     shown = sorted(zip(*handles(*columns[:, 0]), strict=True), key=lambda entry: isinstance(entry[0], PolyCollection))
     below = ["axes of panels differ"] * (len(subjects) > 1), [refer_to_warnings(figure, warnings)]
     shown += [(Line2D([], [], linestyle=""), text) for text in chain(*below) if text]
     legend_outside(figure, ([entry for entry, _ in shown], [_filled(text, figure) for _, text in shown]), "lower", 2)
+    figure.draw_without_rendering()  # lays the panels out, so that words can be clear of lines
+    for panel, sizes in built.items():
+        for size in sizes:
+            _name_size(panel, *size)
     return figure
 
 
@@ -223,25 +233,69 @@ def _mark_sizes_to_build(panel, limits, answer, placed):
 
     A line leads to each from the simulated limit of a beam of its thickness, if the chart has this (1 or 0, humidity).
     There are none if a limit forbids them.
+
+    Returns
+    -------
+    list of tuples
+        Words on each size, its place on the axis, and the ends of its line [µm].
     """
     if is_forbidden(answer) or not np.isfinite(answer.build):
-        return
-    decides, sought = answer.together.humidity, answer.sought
+        return []
+    decides, sought, stricter = answer.together.humidity, answer.sought, unasked(answer)
     label = f"to build {answer.device}: {to_build(answer)}"
     alone = {air.humidity: air.build for air in answer.airs if air.humidity != decides and np.isfinite(air.build)}
-    beside = f", but {listed(sizes)}" if (sizes := unasked(answer)) else ""
+    beside = f", but {listed(stricter)}" if stricter else ""
     only = f"to build {answer.device} in this air alone{beside}"
-    styles = {"markerfacecolor": "white", "label": only}, {"label": label}
+    styles, named = ({"markerfacecolor": "white", "label": only}, {"label": label}), []
     for sizes, style in zip((alone, {decides: answer.build}), styles, strict=True):
         for humidity, size in sizes.items():
             at, height = placed.get(humidity, humidity), TO_UM * size
-            for limit in limits.sel(relative_humidity=limits.relative_humidity == humidity).values.flat:
-                panel.plot([at, at], [height, limit], color=BUILD, linewidth=0.8)
-            panel.plot(at, height, "D", color=BUILD, markersize=5, zorder=4, linestyle="", path_effects=_HALO, **style)
+            limit = limits.sel(relative_humidity=limits.relative_humidity == humidity).values.ravel()[:1]
+            for top in limit:
+                panel.plot([at, at], [height, top], color=BUILD, linewidth=1.4, label=_LED.format(name=answer.device))
+            panel.plot(at, height, "D", color=BUILD, markersize=6, zorder=4, linestyle="", path_effects=_HALO, **style)
             number = bounding(size / sought.scale, 3, sought.more_is_better)
-            is_last = at > np.mean(list(placed.values()))
-            apart, side = ((-3, -2), "right") if is_last else ((3, -2), "left")
-            _write(panel, number, (at, height), apart, color=BUILD, ha=side, va="top", zorder=5)
+            words = [number, *stricter[:1]] if humidity == decides else [number]
+            named.append((textwrap.fill(", but ".join(words), _NARROW), at, (height, *limit)))
+    return named
+
+
+#: What the line of a size to build is, in the legend.
+_LED = "from the limit of the thickness of {name} to its size"
+#: Longest line of the words on a size to build [characters], and steps by which they are raised [points].
+_NARROW, _STEPS = 20, range(2, 80, 2)
+
+
+def _name_size(panel, words, at, heights):
+    """Words on a size to build beside the middle of its line, or above it along a thin one, clear of all lines.
+
+    They are below the size where nothing else is clear.
+    """
+    style = {"textcoords": "offset points", "fontsize": 7, "linespacing": 1, "path_effects": OUTLINED, "zorder": 5}
+    text, top = panel.annotate(words, (at, max(heights)), (0, 0), color=BUILD, **style), max(heights)
+    beside, above = [(np.mean(heights), 0, "center")], [(top, up, "bottom") for up in _STEPS]
+    anywhere = [*beside, *above, (min(heights), -3, "top")]
+    for (height, up, vertical), (apart, side) in product(anywhere, ((5, "left"), (-5, "right"))):
+        text.xy = at, height
+        text.set(position=(apart, up), ha=side, va=vertical)
+        if _is_clear(panel, text):
+            break
+    if vertical == "bottom":
+        end = text.get_window_extent().transformed(panel.transData.inverted()).y1
+        panel.plot([at, at], [top, end], color=BUILD, linewidth=0.6)
+
+
+def _is_clear(panel, text):
+    """Whether a text lies within its panel, on none of its lines and none of its other texts."""
+    box = text.get_window_extent()
+    paths = [line.get_path().transformed(line.get_transform()) for line in panel.lines if len(line.get_xdata())]
+    others = [other.get_window_extent() for other in panel.texts if other is not text]
+    return panel.bbox.count_contains(box.corners()) == len(box.corners()) and not any(
+        (
+            *(path.intersects_bbox(box, filled=False) or box.count_contains(path.vertices) for path in paths),
+            *(box.overlaps(other) for other in others),
+        )
+    )
 
 
 #: White edge of a marker, so that it stands apart from curves.

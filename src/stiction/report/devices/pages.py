@@ -50,8 +50,9 @@ from stiction.stages.devices.results import is_biased
 
 #: What a map over two quantities shows.
 _OF_MAPS = (
-    "Blue: the requirement is met. Colours show log10 of the margin. Solid line: the estimate "
-    "meets it; dashed: the simulated limit does. Dots: computed points; cross: the surface as it is given.",
+    "Blue: the requirement is met, by the factor at the colours. Solid line: the estimate meets it; dashed: the "
+    "simulated limit does. Grey: the estimate meets it, but full contact of these smoother surfaces, in which more "
+    "stick, is not computed. Dots: computed points; cross: the surface as it is given.",
 )
 #: Why a table of a budget has cells without a number.
 _MISSING_EFFECTS = "this input does not act here, or too few of the simulated devices stick to show what it changes"

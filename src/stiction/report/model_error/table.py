@@ -1,5 +1,6 @@
 """Table and figure of the error of the model: crack lengths of Table III, model NG, under full elastic contact."""
 
+import textwrap
 from collections.abc import Mapping
 
 import numpy as np
@@ -14,17 +15,21 @@ from stiction.report.format import UM, as_published, percent, signed, with_error
 from stiction.report.model_error.column import change, marked_change
 from stiction.report.published import value
 from stiction.report.style import (
+    DOUBLE,
     MODELS,
     PUBLISHED,
     SINGLE,
     STUDIES,
-    at_most_double,
-    columns_of_panels,
     figure_stage,
     handles,
     humidity_axis,
+    is_page,
+    legend_below,
     legend_outside,
-    letter_lines,
+    letter,
+    marker,
+    panels,
+    shades,
     styled,
 )
 from stiction.report.table import PAIR, Table, Term, table_stage
@@ -100,13 +105,13 @@ def _beam_change(case, variants):
     return dict(zip(("beams_change_percent", "beams_change_se_percent"), map(float, change), strict=True))
 
 
-#: Labels of the panels of a pair. Longer cracks under full contact leave limits by summits too short.
-_SHOWN = (
-    "crack by full contact\nover the model's [%]\n+: model too short (safe)",
-    "crack length\nover published [%]\nstars below 0: unsafe",
+#: Labels of the panels of errors and of lengths. Longer cracks under full contact leave limits by summits too short.
+_ERROR, _LENGTH = (
+    "crack by full contact,\nlonger than the model's by [%]",
+    "crack length,\nlonger than published by [%]",
 )
-#: What these panels show, after the name of the pair.
-_TITLES = ": full contact beside summits", ": both beside published and measured"
+#: Mean width of a character of a title, and height of a panel [in].
+_CHARACTER, _HIGH = 0.055, 2.6
 
 
 def table(*data) -> Table:
@@ -137,51 +142,83 @@ def figure(*data) -> Figure:
 
 @styled
 def drawn(frame: pd.DataFrame) -> Figure:
-    """Error of the model against humidity, and deviations from the published lengths, from the frame of the table."""
-    pairs = list(dict.fromkeys(frame.pair))
-    count = 2 if frame.published_um.notna().any() else 1
-    figure, columns, lines = columns_of_panels(
-        len(pairs), count, at_most_double(1.3 * SINGLE), 0.8 + 1.7 * count, sharex="col"
-    )
-    for column, pair in zip(columns, pairs, strict=True):
-        _panels(column, frame[frame.pair == pair])
-    for line in lines:
-        for panel, shows in zip(line[:, 0], _SHOWN, strict=False):
-            panel.set_ylabel(shows)
-    legend_outside(figure, handles(*columns.flat), "upper", 3)
-    letter_lines(lines, [f"pair {pair}" for pair in pairs], _TITLES[:count])
+    """Error of the model against humidity, of all pairs on one axis, and deviations from the published lengths.
+
+    Parameters
+    ----------
+    frame
+        Of the table. Each pair with published lengths has a panel.
+    """
+    compared = frame[frame.published_um.notna()]
+    pairs = list(dict.fromkeys(compared.pair))
+    figure, (error, *deviations), width = _arranged(1 + len(pairs))
+    _errors(error, frame)
+    for panel, pair in zip(deviations, pairs, strict=True):
+        _deviations(panel, compared[compared.pair == pair])
+    for panel in (error, *deviations):
+        panel.axhline(0, color="0.6", linewidth=0.6, zorder=0)
+        panel.set(xlabel="relative humidity [–]", xlim=error.get_xlim())
+        humidity_axis(panel)
+    legend_below(error, handles(error)[0])
+    legend_outside(figure, handles(*deviations), "lower", 3)
+    titles = [_in_words(frame.model_error_percent), *(_off(compared[compared.pair == pair]) for pair in pairs)]
+    letter([error, *deviations], [textwrap.fill(title, int(width / _CHARACTER)) for title in titles])
     return figure
 
 
-def _panels(column, rows):
-    """Panels of one pair."""
-    computed, compared = rows[~rows.interpolated], rows[rows.published_um.notna()]
+def _arranged(count):
+    """Figure with some panels in two columns, or below each other on a page, and the width of a column [in]."""
+    across = 1 if is_page() else min(count, 2)
+    rows = -(-count // across)
+    figure, axes = panels(rows, across, (min(DOUBLE, 1.3 * SINGLE * across), _HIGH * rows))
+    shown, unused = np.split(axes.ravel(), [count])
+    for panel in unused:
+        panel.remove()
+    return figure, shown, figure.get_figwidth() / across
+
+
+def _in_words(errors):
+    """Largest errors of the model in both directions, each with its side."""
+    sides = (errors.max(), "too short", "safe"), (-errors.min(), "too long", "unsafe")
+    said = [f"{way} by up to {size:.0f} % ({side})" for size, way, side in sides if round(size)]
+    return f"the model's cracks are {' and '.join(said) or 'right'}"
+
+
+def _off(rows):
+    """Root mean square of the deviations of a pair, by summits and by full contact."""
+    summits, full = (np.sqrt(np.mean(rows[f"{name}deviation_percent"] ** 2)) for name in ("", "full_contact_"))
+    return f"pair {rows.pair.iloc[0]}: rms {summits:.1f} % off by summits, {full:.1f} % by full contact"
+
+
+def _errors(panel, frame):
+    """Error of the model of each pair, at the computed humidities and between them, and by beams on corrected laws."""
+    pairs = list(dict.fromkeys(frame.pair))
+    for k, (pair, shade) in enumerate(zip(pairs, shades(len(pairs)), strict=True)):
+        rows = frame[frame.pair == pair]
+        computed = rows[~rows.interpolated]
+        panel.plot(rows.relative_humidity, rows.model_error_percent, ":", color=shade)
+        points = computed.relative_humidity, computed.model_error_percent, computed.model_error_se_percent
+        panel.errorbar(*points, fmt=marker(k), color=shade, label=f"pair {pair}, ± standard error")
+        of_beams = rows.relative_humidity, rows.beams_change_percent, rows.beams_change_se_percent
+        if rows.beams_change_percent.notna().any():
+            panel.errorbar(*of_beams, fmt="x", color=shade)
+    panel.plot([], [], ":", color="0.3", label="interpolated")
+    if frame.beams_change_percent.notna().any():
+        panel.plot([], [], "x", color="0.3", label="by beams computed with full contact")
+    panel.set_ylabel(_ERROR)
+
+
+def _deviations(panel, rows):
+    """Deviation of the lengths of one pair from the published ones, by both models and as measured."""
     style = {"color": MODELS["NG"]["color"]}
-    column[0].plot(rows.relative_humidity, rows.model_error_percent, linestyle=":", label="interpolated", **style)
-    points = computed.relative_humidity, computed.model_error_percent, computed.model_error_se_percent
-    column[0].errorbar(*points, fmt="o", label="full contact, correction ± standard error", **style)
-    of_beams = rows.relative_humidity, rows.beams_change_percent, rows.beams_change_se_percent
-    if rows.beams_change_percent.notna().any():
-        column[0].errorbar(*of_beams, fmt="x", color="black", label="beams computed with full contact ± standard error")
-    if len(column) > 1:
-        summits = {
-            "linestyle": "--",
-            "marker": "s",
-            "markerfacecolor": "white",
-            "label": "sum over summits, crack length",
-        }
-        column[1].plot(compared.relative_humidity, compared.deviation_percent, **summits, **style)
-        full = {"linestyle": "-", "marker": "o", "label": "full contact, crack length"}
-        column[1].plot(compared.relative_humidity, compared.full_contact_deviation_percent, **full, **style)
-        measured = (
-            percent(compared.experiment_um / compared.published_um, 1),
-            100 * compared.experiment_std_um / compared.published_um,
-        )
-        column[1].errorbar(compared.relative_humidity, *measured, fmt="*", color=PUBLISHED, label="measured ± std")
-    column[-1].set_xlabel("relative humidity [–]")
-    for panel in column:
-        panel.axhline(0, color="0.6", linewidth=0.6, zorder=0)
-    humidity_axis(column[0])
+    summits = {"linestyle": "--", "marker": "s", "markerfacecolor": "white", "label": "model: sum over summits"}
+    panel.plot(rows.relative_humidity, rows.deviation_percent, **summits, **style)
+    full = {"linestyle": "-", "marker": "o", "label": "full contact"}
+    panel.plot(rows.relative_humidity, rows.full_contact_deviation_percent, **full, **style)
+    measured = percent(rows.experiment_um / rows.published_um, 1), 100 * rows.experiment_std_um / rows.published_um
+    label = "measured ± std; below the lines: unsafe"
+    panel.errorbar(rows.relative_humidity, *measured, fmt="*", color=PUBLISHED, label=label)
+    panel.set_ylabel(_LENGTH)
 
 
 def _stage(kind, shows, draw, **declared):

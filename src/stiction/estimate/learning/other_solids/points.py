@@ -14,11 +14,10 @@ from typing import Any
 
 import numpy as np
 
-from stiction.config.units import to_si
+from stiction.config.units import from_si, to_si
 from stiction.contact import meniscus
 from stiction.estimate.learning import patches, training
 from stiction.estimate.learning.design import Point, SurfaceLaw, states
-from stiction.estimate.learning.other_solids.attraction import in_dry_air
 from stiction.estimate.learning.training import (
     FACTORS,
     TrainingEffort,
@@ -26,9 +25,11 @@ from stiction.estimate.learning.training import (
     changes_of,
     full_contact_of,
     main,
+    of_beam,
     water_of,
     with_materials,
 )
+from stiction.estimate.solids import following
 from stiction.plan.plan import Plan
 from stiction.streams import stream
 
@@ -60,10 +61,11 @@ def _material(rng):
     """Material of one side. Its constants through water and air follow from each other by the combining relation."""
     modulus, poisson_ratio, angle = (rng.uniform(*RANGES[name]) for name in ("modulus", "poisson_ratio", "angle"))
     through_water = math.exp(rng.uniform(*map(math.log, RANGES["hamaker"])))
+    through_air = from_si(following(to_si(through_water, "zJ")), "zJ")
     return {
         "young_modulus_GPa": round(modulus, 1),
         "poisson_ratio": round(poisson_ratio, 3),
-        "hamaker_constant_zJ": {"water": round(through_water, 2), "dry": round(in_dry_air(through_water), 2)},
+        "hamaker_constant_zJ": {"water": round(through_water, 2), "dry": round(through_air, 2)},
         "contact_angle_deg": round(angle, 1),
     }
 
@@ -80,17 +82,11 @@ def with_solids(plan: Plan, temperature: float, materials: list[dict[str, Any]])
     return with_materials(Plan(plan.config | {"water": {"temperature_K": temperature}}), *materials)
 
 
-def of_beam(point: Point, materials: list[dict[str, Any]], valid: dict[str, Any]) -> Point:
-    """Point of which `stiction.estimate.learning.training.plan_of` finds a gap for its stiffness and its own beam."""
-    relative = materials[0]["young_modulus_GPa"] / valid["solid"]["young_modulus_GPa"]
-    return replace(point, stiffness=point.stiffness / relative)
-
-
 def computed(point: Point, name: str, valid: dict[str, Any]) -> dict[str, Any]:
     """Numbers of the tips of one point of a set."""
     effort, (temperature, materials) = SETS[name], drawn(point, SETS[name].seed)
     humidity = humidity_of(temperature, materials, states(1, point.number, effort.seed)[0, 0])
-    plan = with_solids(training.plan_of(of_beam(point, materials, valid), valid), temperature, materials)
+    plan = with_solids(training.plan_of(of_beam(point, materials[0], valid), valid), temperature, materials)
     number = effort.tips + round(effort.tips_by_width / to_si(point.width, "um"))
     tips, water = TrainingTips.of(point, plan, number, effort.seed), water_of(plan)
     of_full = full_contact_of(point, plan, humidity, effort)

@@ -1,11 +1,12 @@
-"""Rows about other solids: how their attraction changes lengths and forces, and errors of the estimate on them.
+"""Rows about other solids: how their ratios change lengths and forces, and errors of the estimate on them.
 
-From the files of `stiction.estimate.learning.other_solids.attraction` and
+From the files of `stiction.estimate.learning.other_solids.ratios` and
 `stiction.estimate.learning.other_solids.points`.
 """
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +21,8 @@ from stiction.estimate.learning.bridge_rows import states_of as bridges_of
 from stiction.estimate.learning.design import Point
 from stiction.estimate.learning.errors import Tested, beside, lengths_of
 from stiction.estimate.learning.fit import DesignRows
-from stiction.estimate.learning.other_solids import attraction, points
+from stiction.estimate.learning.other_solids import points, ratios
+from stiction.estimate.learning.other_solids.ratios import LearntRatio, stored_ratios
 from stiction.estimate.learning.rows import (
     OF_FULL,
     OF_RATIO,
@@ -31,78 +33,101 @@ from stiction.estimate.learning.rows import (
     states_of,
     stored,
 )
-from stiction.estimate.learning.training import TrainingEffort
 from stiction.estimate.length import NAMES, lengths
 from stiction.estimate.solids import SolidPair
 from stiction.estimate.state import COORDINATES, OF_PATCHES, PatchState, TipState, film
 from stiction.estimate.statistics import of_pair
 from stiction.estimate.table import Surrogate
 
-#: Coordinates that the change by the attraction depends on, with its own as the last. ASSUME: no others.
-OF_TIPS_ATTRACTED, OF_PATCHES_ATTRACTED = (*OF_FULL, len(COORDINATES)), (*OF_RATIO, len(OF_PATCHES))
-OF_BRIDGES_ATTRACTED = (*OF_RATIO, len(OF_BRIDGES))
+#: Coordinates of tips, patches and bridges that changes by ratios depend on. ASSUME: no others.
+_OF_TIPS, _OF_PATCHES, _OF_BRIDGES = (OF_FULL, COORDINATES), (OF_RATIO, OF_PATCHES), (OF_RATIO, OF_BRIDGES)
 
 
-def _both(
-    folder: Path, of_polysilicon: Path, sets: Mapping[str, TrainingEffort] = attraction.SETS
-) -> Iterator[tuple[Point, dict[str, Any], dict[str, Any]]]:
-    """Points with their numbers at another attraction and on polysilicon."""
+@dataclass(frozen=True)
+class RowsOfRatio:
+    """Rows of the change by the logarithm of one ratio, and the coordinates that it depends on."""
+
+    rows: DesignRows
+    columns: tuple[int, ...]  #: the last is that logarithm
+
+
+@dataclass(frozen=True)
+class _Changed:
+    """Numbers of a point of a ratio, beside those without it."""
+
+    point: Point
+    of_polysilicon: dict[str, Any]
+    numbers: dict[str, Any]
+    before: dict[str, Any]
+    logarithms: tuple[float, ...]  #: of all ratios
+
+    def each(self, name):
+        """Numbers of a name in each air, with those without the ratio."""
+        return zip(self.numbers[name], self.before[name], strict=False)
+
+
+def _changed(folder, ratio, place, part=""):
+    """Points of a ratio. Their numbers are in a part of its folder, those of polysilicon at a place."""
+    sets = ratio.of_bridges if part else ratio.sets
     for name in sets:
-        for point, numbers in stored(folder, name, sets):
+        for point, numbers in stored(folder / ratio.folder / part, name, sets):
             number = next(each.number for each in sets[name].all if each.sides == point.sides)
-            with np.load(of_polysilicon / name / f"{number:04}.npz") as file:
-                yield point, numbers, dict(file)
+            before = folder / ratio.before.folder / part if ratio.before else folder / place
+            of_both = [_loaded(each / name / f"{number:04}.npz") for each in (folder / place, before)]
+            yield _Changed(point, of_both[0], numbers, of_both[1], stored_ratios(numbers).logarithms)
 
 
-def _rows(entries):
-    """Rows of the change of quantities by the logarithm of the attraction, from both at each state."""
-    surface, coordinates, changed, of_polysilicon, by = zip(*entries, strict=True)
-    by = np.array(by)
-    pairs = list(zip(changed, of_polysilicon, strict=True))
+def _loaded(path):
+    """Numbers of a file."""
+    with np.load(path) as file:
+        return dict(file)
+
+
+def _rows(entries, ratio, columns, names):
+    """Rows of the change of quantities by the logarithm of a ratio, from both at each state."""
+    surface, coordinates, changed, before, logarithms = zip(*entries, strict=True)
+    logarithms = np.array(logarithms)
+    by, pairs = logarithms[:, ratio.numbers[-1]], list(zip(changed, before, strict=True))
     values = {name: np.array([more[name] - less[name] for more, less in pairs]) / by for name in NAMES[:3]}
-    return DesignRows(np.column_stack([coordinates, by]), values, np.array(surface), 1 / np.abs(by))
+    rows = DesignRows(np.column_stack([coordinates, logarithms]), values, np.array(surface), 1 / np.abs(by))
+    return RowsOfRatio(rows, (*columns, *(len(names) + number for number in ratio.numbers)))
 
 
-def rows_of_tips(folder: Path, modulus: float) -> DesignRows:
-    """Rows of all tips on summits at another attraction."""
-    return _rows(
-        (point.number, state.coordinates, *(of_tips(slopes / state.flooded_slope) for slopes in both), by)
-        for point, numbers, of_polysilicon in _both(folder / attraction.FOLDER, folder)
-        for by in [math.log(numbers["ratio"])]
-        for states, *of_air in zip(
-            states_of(point, of_polysilicon["airs"][: attraction.AIRS], modulus),
-            numbers["slopes"],
-            of_polysilicon["slopes"],
+def rows_of_tips(folder: Path, modulus: float, ratio: LearntRatio) -> RowsOfRatio:
+    """Rows of all tips on summits at the points of a ratio."""
+    entries = (
+        (one.point.number, state.coordinates, *(of_tips(slopes / state.flooded_slope) for slopes in both), by)
+        for one in _changed(folder, ratio, "")
+        for by in [one.logarithms]
+        for states, of_air in zip(
+            states_of(one.point, one.of_polysilicon["airs"][: ratios.AIRS], modulus),
+            one.each("slopes"),
             strict=False,
         )
         for state, *both in zip(states, *of_air, strict=True)
     )
+    return _rows(entries, ratio, *_OF_TIPS)
 
 
-def rows_of_patches(folder: Path, modulus: float) -> DesignRows:
-    """Rows of all patches on summits at another attraction."""
-    return _rows(
-        (point.number, patch.coordinates, *(of_forces(each, patch) for each in both), by)
-        for point, numbers, of_polysilicon in _both(folder / attraction.FOLDER, folder / patches.FOLDER)
-        for by in [math.log(numbers["ratio"])]
-        for patch, *both in zip(
-            patches_of(point, of_polysilicon, modulus), numbers["forces"], of_polysilicon["forces"], strict=False
-        )
+def rows_of_patches(folder: Path, modulus: float, ratio: LearntRatio) -> RowsOfRatio:
+    """Rows of all patches on summits at the points of a ratio."""
+    entries = (
+        (one.point.number, patch.coordinates, *(of_forces(each, patch) for each in both), one.logarithms)
+        for one in _changed(folder, ratio, patches.FOLDER)
+        for patch, both in zip(patches_of(one.point, one.of_polysilicon, modulus), one.each("forces"), strict=False)
     )
+    return _rows(entries, ratio, *_OF_PATCHES)
 
 
-def rows_of_bridges(folder: Path, modulus: float) -> DesignRows:
-    """Rows of all bridges on summits at another attraction whose lengths are known at both."""
-    changed = folder / attraction.FOLDER / bridges.FOLDER
-    return _rows(
-        (point.number, bridge.coordinates, *(of_middle(bridge, each) for each in both), by)
-        for point, numbers, of_polysilicon in _both(changed, folder / bridges.FOLDER, attraction.OF_BRIDGES)
-        for by in [math.log(numbers["ratio"])]
-        for bridge, *both in zip(
-            bridges_of(point, of_polysilicon, modulus), numbers["lengths"], of_polysilicon["lengths"], strict=False
-        )
+def rows_of_bridges(folder: Path, modulus: float, ratio: LearntRatio) -> RowsOfRatio:
+    """Rows of all bridges on summits at the points of a ratio whose lengths are known with and without it."""
+    entries = (
+        (one.point.number, bridge.coordinates, *(of_middle(bridge, each) for each in both), one.logarithms)
+        for one in _changed(folder, ratio, bridges.FOLDER, bridges.FOLDER)
+        for bridge, both in zip(bridges_of(one.point, one.of_polysilicon, modulus), one.each("lengths"), strict=False)
         if are_known(np.array(both)).all()
     )
+    return _rows(entries, ratio, *_OF_BRIDGES)
 
 
 def solids_of(point: Point, name: str) -> tuple[SolidPair, float]:
@@ -132,7 +157,7 @@ def tested(
     for point, numbers, solids, water in _stored(folder / points.FOLDER, name, as_polysilicon):
         if np.isfinite(numbers["changed"]).all():
             sizes = point.stiffness, to_si(point.width, "um")
-            state = TipState(of_pair(point.sides), water, *sizes, solids.modulus, solids.attraction(water.energy))
+            state = TipState(of_pair(point.sides), water, *sizes, solids.modulus, solids.beside_water(water.energy))
             true = lengths_of(of_tips(numbers["changed"]), math.log(1.5))
             yield beside(point, true, score, lambda state=state: lengths(state, 1.0, *processes))
 
@@ -144,7 +169,7 @@ def tested_forces(
     for point, numbers, solids, water in _stored(folder / points.FOLDER / patches.FOLDER, name, as_polysilicon):
         if np.isfinite(numbers["ratio"]):
             area = float(np.prod(to_si(numbers["sides"], "um")))
-            patch = PatchState(of_pair(point.sides), water, area, solids.modulus, solids.attraction(water.energy))
+            patch = PatchState(of_pair(point.sides), water, area, solids.modulus, solids.beside_water(water.energy))
             pressures = numbers["forces"][0].astype(float)
             changed = change_of(numbers).of(pressures)(pressures)
             true = lengths_of(of_forces(changed, patch), -math.log(patch.flooded_force))
