@@ -140,6 +140,7 @@ surrogate: $(VENV)/ready
 	$(BIN)/python -m stiction.estimate.learning.bridges runs/surrogate
 	$(BIN)/python -m stiction.estimate.learning.dry runs/surrogate
 	$(BIN)/python -m stiction.estimate.learning.dry_patches runs/surrogate
+	$(BIN)/python -m stiction.estimate.learning.dry_bridges runs/surrogate
 	$(BIN)/python -m stiction.estimate.learning.other_solids.ratios runs/surrogate
 	$(BIN)/python -m stiction.estimate.learning.other_solids.points runs/surrogate
 	$(BIN)/python -m stiction.estimate.learning.make runs/surrogate

@@ -368,7 +368,6 @@ def test_the_fraction_at_a_length_is_that_of_its_row_after_all_touchdowns():
         ({"voltage_V": 3}, "its file is not complete, at 'dielectric'"),
         ({"dimples": {}}, "dimples was not learnt"),
         ({"strip_um": 0.4}, "strip_um was not learnt"),
-        ({"humidities": [0.0]}, "dry"),
         ({"humidities": [0.999]}, "beyond what was learnt"),
         ({"gap_um": 6.5}, "the gap of a bridge must be from 0.3 to 6 µm"),
         ({"thickness_um": 0.5}, "the thickness of a bridge must be from 0.7 to 6 µm"),

@@ -8,7 +8,8 @@ import pytest
 from stiction.estimate import dry as of_dry_air
 from stiction.estimate.answer import CONFIDENCES, TO_USE
 from stiction.estimate.bridge import COORDINATES as OF_BRIDGES
-from stiction.estimate.learning import dry, dry_patches, training
+from stiction.estimate.dry_bridge import COORDINATES as OF_DRY_BRIDGES
+from stiction.estimate.learning import dry, dry_bridges, dry_patches, training
 from stiction.estimate.learning.design import FILMS, SurfaceLaw, points, states
 from stiction.estimate.learning.make import control_of_bridges, control_of_forces, control_of_patches, control_of_slopes
 from stiction.estimate.page import page
@@ -32,7 +33,7 @@ def test_tips_patches_and_bridges_are_still_those_that_were_learnt():
 
 def test_contacts_in_dry_air_are_still_those_that_were_learnt():
     with without_progress():
-        found = dry.control() | dry_patches.control()
+        found = dry.control() | dry_patches.control() | dry_bridges.control()
     for name, values in content()["dry"]["control"].items():
         np.testing.assert_allclose(found[name], values, rtol=1e-3, err_msg=AGAIN)
 
@@ -58,11 +59,13 @@ def test_the_table_has_what_the_estimate_reads():
     in_dry_air = content()["dry"]
     assert list(of_dry_air.OF_TIPS) == in_dry_air["coordinates"]
     assert list(of_dry_air.OF_PATCHES) == in_dry_air["stoppers"]["coordinates"]
-    for part in (content(), stoppers, bridges, in_dry_air, in_dry_air["stoppers"]):
+    assert list(OF_DRY_BRIDGES) == in_dry_air["bridges"]["coordinates"]
+    for part in (content(), stoppers, bridges, in_dry_air, in_dry_air["stoppers"], in_dry_air["bridges"]):
         first, last = (part["margins"][name] for name in CONFIDENCES)
         assert 0 < first <= part["margins"][TO_USE] <= last < 5
     others = [Surrogate(**part[name]) for part, name in ((stoppers, "forces"), (bridges, "middle"))]
     others += [Surrogate(**part["full"]) for part in (stoppers, bridges)]
+    others += [Surrogate(**in_dry_air["bridges"]["middle"])]
     for one in (process("tips"), process("full"), *others):
         assert len(one.nodes[0]) == len(one.columns)
 

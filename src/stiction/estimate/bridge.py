@@ -27,6 +27,7 @@ from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 from stiction.config.units import to_si
+from stiction.estimate import dry, dry_bridge
 from stiction.estimate.asked import Asked
 from stiction.estimate.closed import flats
 from stiction.estimate.closed.beams import SlenderBeam
@@ -36,7 +37,7 @@ from stiction.estimate.closed.life import BeamLife
 from stiction.estimate.force import pull_off
 from stiction.estimate.length import LengthRow, Lengths, NotLearnt, falling, known_at, on_solids
 from stiction.estimate.solids import OF_POLYSILICON, BesideWater
-from stiction.estimate.state import OF_PATCHES, Film, PatchState, film
+from stiction.estimate.state import OF_PATCHES, Film, PatchState, film, held_by
 from stiction.estimate.statistics import Heights
 from stiction.estimate.table import Surrogate, processes
 
@@ -102,7 +103,7 @@ class MiddleState:
     @property
     def held(self) -> float:
         """Product e f L⁸ with which it is held without stress [N² m⁵]."""
-        return 768 * (self.modulus * self.thickness**3) ** 2 * self.gap**3
+        return held_by(self.modulus * self.thickness**3, self.gap)
 
     @property
     def flooded_length(self) -> float:
@@ -196,20 +197,28 @@ class Bridge(Asked):
         return Stretched.of(self.stress, self.thickness, self.solids.beam_modulus)
 
     def closed_on(self, found: Mapping[Heights, Lengths], air: float, table: Mapping[str, Any]) -> Stretched:
-        """Closed form of its lengths in humid air, of the surface on which a voltage shortens them most."""
+        """Closed form of its lengths in one air, of the surface on which a voltage shortens them most."""
         if not self.tension:
             return self.closed
-        water = film(air, self.temperature, self.solids.wetting)
-        return replace(
-            self.closed, factor=min(self._factor(heights, water, each, table) for heights, each in found.items())
-        )
+        factors = (self._factor(self._pull_off(heights, air, table), each) for heights, each in found.items())
+        return replace(self.closed, factor=min(factors))
 
-    def _factor(self, heights, water, found, table):
-        """Factor of the lengths by its voltage on the sum of two surfaces, from those without it."""
-        state = self._state(heights, water)
-        force = pull_off(known_patch(state.patch, table["stoppers"]), table["stoppers"])
-        energy = state.held / (math.exp(found.logarithms[0]) ** 8 * force)
+    def _factor(self, force, found):
+        """Factor of the lengths by its voltage, from a pull-off pressure and the lengths without it."""
+        energy = held_by(self._rigidity, self.gap) / (math.exp(found.logarithms[0]) ** 8 * force)
         return shorter(energy, force, self.added, self.tension)
+
+    def _pull_off(self, heights, air, table):
+        """Pull-off pressure of the middle on the sum of two surfaces at a humidity."""
+        if self.is_dry(air):
+            return self._dry_state(heights, table["dry"]).pull_off
+        patch = self._state(heights, film(air, self.temperature, self.solids.wetting)).patch
+        return pull_off(known_patch(patch, table["stoppers"]), table["stoppers"])
+
+    @property
+    def _rigidity(self):
+        """E t³."""
+        return self.solids.beam_modulus * self.thickness**3
 
     @property
     def life(self) -> BeamLife:
@@ -236,9 +245,17 @@ class Bridge(Asked):
         solids, ratios = self.solids, self.solids.beside_water(water.energy)
         return MiddleState(heights, water, *sizes, solids.beam_modulus, solids.modulus, ratios)
 
-    def in_dry_air(self, _heights: Heights, _table: Mapping[str, Any]) -> Lengths:
-        """Lengths in dry air, which are not known."""
-        raise NotLearnt("a bridge was not learnt in dry air")
+    def in_dry_air(self, heights: Heights, table: Mapping[str, Any]) -> Lengths:
+        """Lengths of `lengths` in dry air."""
+        self._refuse(table["bridges"]["ranges"])
+        learnt = table["dry"]
+        return dry_bridge.lengths(self._dry_state(heights, learnt), *dry.processes(learnt["bridges"], "middle"))
+
+    def _dry_state(self, heights, learnt):
+        """State on the sum of two surfaces in dry air, of which a part of the table is."""
+        patch = dry.DryPatch(heights, self.solids.in_dry_air, dry_bridge.AREA, self.solids.modulus)
+        force = dry.pull_off(patch, learnt["stoppers"])
+        return dry_bridge.DryMiddle(patch, force, self._rigidity, self.gap, self.width)
 
     def _refuse(self, ranges):
         """Refuse sizes beyond ranges by their names, of ends and unit."""

@@ -165,6 +165,18 @@ def reciprocals(patch: DryPatch, forces: Surrogate, full: Surrogate) -> Lengths:
     return scattered(distribution, power, -change["ratio"] - (1 - power**2) * distribution.fall**2 / 2)
 
 
+def pull_off(patch: DryPatch, learnt: Mapping[str, Any]) -> float:
+    """Median pull-off pressure of a patch, from the part of the table about stoppers in dry air [Pa].
+
+    Raises
+    ------
+    NotLearnt
+        If the patch is beyond what was learnt.
+    """
+    found = reciprocals(patch, *processes(learnt, "forces", "full"))
+    return math.exp(-found.logarithms[0]) / patch.area
+
+
 def processes(section: Mapping[str, Any], *names: str) -> tuple[Surrogate, ...]:
     """Processes of a part of the table by name."""
     return tuple(Surrogate(**section[name]) for name in names)

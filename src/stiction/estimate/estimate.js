@@ -228,29 +228,44 @@ function lengthsOfBridge(state, closed, bridges) {
   const {logarithms, slope} = falling(values, Math.log(floodedLength(state))), [median] = logarithms;
   return {logarithms: logarithms.map((each) => median + shift + power * (each - median)), slope: power * slope};
 }
-function shorterBy({logarithms: [median]}, state, {energy, tension}, stoppers) { // at a voltage
+function pullOff(state, stoppers) {
   const [low, high] = stoppers.sides.map((side) => (side * 1e-6) ** 2), middle = middleOf(state);
   const patch = {...middle, area: Math.min(Math.max(middle.area, low), high)};
-  const pull = Math.exp(-reciprocals(patch, stoppers).logarithms[0]) / patch.area;
-  return ((1 + energy / (heldBy(state) / (Math.exp(median) ** 8 * pull))) * (1 + tension / pull)) ** -0.125;
+  return Math.exp(-reciprocals(patch, stoppers).logarithms[0]) / patch.area;
 }
-function ofBridge({thickness, gap, width, stress, length, added = 0, tension = 0, solids = POLYSILICON}, {water: ofWater, bridges, stoppers}) {
+function shorterBy({logarithms: [median]}, held, pull, {energy, tension}) { // at a voltage
+  return ((1 + energy / (held / (Math.exp(median) ** 8 * pull))) * (1 + tension / pull)) ** -0.125;
+}
+const DRY_AREA = 9e-12;
+function dryLengthsOfBridge({thickness, gap, width, modulus}, patch, pull, {middle, coordinates: names}) {
+  const rigidity = modulus * thickness ** 3, length = (heldBy({thickness, gap, modulus}) / (pull ** 2 * AT_REST)) ** 0.125;
+  const area = width * 8 * rigidity * gap / (length ** 3 * pull);
+  const place = [...ofDryPatch(patch).slice(0, 2), Math.log(area * curvature(patch.heights) ** 2)];
+  return falling(known(middle, place, names), Math.log(length));
+}
+function ofBridge({thickness, gap, width, stress, length, added = 0, tension = 0, solids = POLYSILICON}, {water: ofWater, bridges, stoppers, dry}) {
   const modulus = solids.beamModulus, closed = stretchedBy(stress, thickness, modulus);
   const stateOf = (heights, water) => ({heights, film: water, thickness, gap, width, modulus, inContact: solids.modulus, besideWater: besideWater(solids, water, ofWater)});
+  const dryPatch = (heights) => ({heights, constant: solids.inDryAir, area: DRY_AREA, modulus: solids.modulus});
+  const dryPull = (heights) => Math.exp(-dryReciprocals(dryPatch(heights), dry.stoppers).logarithms[0]) / DRY_AREA;
+  const refuse = () => {
+    const sizes = {thickness, gap, width, stress};
+    for (const [name, [low, high, unit]] of Object.entries(bridges.ranges)) {
+      const outside = !(low * UNITS[unit] <= sizes[name] && sizes[name] <= high * UNITS[unit]), symbol = unit.replace("u", "µ");
+      if (outside) throw new NotLearnt(`the ${name} of a bridge must be from ${low} to ${high} ${symbol}`);
+    }
+  };
   return {
-    lengths: (heights, water) => {
-      const sizes = {thickness, gap, width, stress};
-      for (const [name, [low, high, unit]] of Object.entries(bridges.ranges)) {
-        const outside = !(low * UNITS[unit] <= sizes[name] && sizes[name] <= high * UNITS[unit]), symbol = unit.replace("u", "µ");
-        if (outside) throw new NotLearnt(`the ${name} of a bridge must be from ${low} to ${high} ${symbol}`);
-      }
-      return lengthsOfBridge(stateOf(heights, water), closed, bridges);
-    },
+    lengths: (heights, water) => { refuse(); return lengthsOfBridge(stateOf(heights, water), closed, bridges); },
     closedOn: (pairs, found, water) => {
-      const factors = pairs.map((heights, k) => tension ? shorterBy(found[k], stateOf(heights, water), {energy: added, tension}, stoppers) : 1);
+      const pull = (heights) => water ? pullOff(stateOf(heights, water), stoppers) : dryPull(heights), held = heldBy({thickness, gap, modulus});
+      const factors = pairs.map((heights, k) => tension ? shorterBy(found[k], held, pull(heights), {energy: added, tension}) : 1);
       return stretchedBy(stress, thickness, modulus, Math.min(...factors));
     },
-    inDryAir: () => { throw new NotLearnt("a bridge was not learnt in dry air"); },
+    inDryAir: (heights) => {
+      refuse();
+      return dryLengthsOfBridge({thickness, gap, width, modulus}, dryPatch(heights), dryPull(heights), dry.bridges);
+    },
     closed, errors: (part) => part.bridges, stated: length, row: ({length, intervals}) => ({size: length, intervals}),
   };
 }

@@ -153,6 +153,11 @@ class PatchState:
         )
 
 
+def held_by(rigidity: float, gap: float) -> float:
+    """Product e f L⁸ with which a bridge without stress is held, from E t³ [N m] and the gap [m] [N² m⁵]."""
+    return 768 * rigidity**2 * gap**3
+
+
 def stiffness_of(modulus: float, thickness: float, gap: float) -> float:
     """K = E t³ / h² of a beam [N m⁻¹], from its modulus [Pa], thickness and gap [m]."""
     return modulus * thickness**3 / gap**2

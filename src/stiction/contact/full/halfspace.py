@@ -86,8 +86,8 @@ class HalfSpace:
 def love(i: np.ndarray, j: np.ndarray) -> np.ndarray:
     r"""Displacement of an infinite half-space at offsets from a square element of uniform pressure, in units of p Δ/E'.
 
-    .. math:: u = \frac{1}{\pi} \sum_{s, t = \pm} s t \Bigl[ x_s \ln(y_t + r_{st}) + y_t \ln(x_s + r_{st}) \Bigr] ,
-              \quad x_\pm = i \pm \tfrac12, \quad y_\pm = j \pm \tfrac12
+    .. math:: u = \frac{1}{\pi} \sum_{s, t = \pm 1} s t \Bigl[ x_s \ln(y_t + r_{st}) + y_t \ln(x_s + r_{st}) \Bigr] ,
+              \quad x_s = i + \tfrac s2, \quad y_t = j + \tfrac t2
 
     Parameters
     ----------

@@ -8,7 +8,7 @@ As `stiction.estimate.learning.training`, whose surfaces and air they have, and 
 
 import math
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -58,16 +58,16 @@ EVERY = {"learn_any": 2, "learn_typical": 2, "check_typical": 2, "check_any": 2}
 _WIDTH, _ERROR = to_si(6, "um"), 0.08
 
 
-def base() -> dict[str, Any]:
-    """Configuration of the points: all that bridges have by default."""
+def base(airs: Sequence[float | str] = HUMIDITIES) -> dict[str, Any]:
+    """Configuration of the points in some airs: all that bridges have by default."""
     device = {"kind": "bridge", "pair": PAIR} | dict(zip(_SIZES, _OF_PAPER, strict=True)) | {"width_um": 30}
-    pair = {"beam": "S", "substrate": "T", "gap_um": 2, "humidities": HUMIDITIES}
+    pair = {"beam": "S", "substrate": "T", "gap_um": 2, "humidities": [*airs]}
     return load(
         {
             "run": {"pairs": [], "studies": []},
             "surfaces": {"S": {"rms_nm": 3, "like": "B2"}, "T": {"rms_nm": 0.2, "like": "Sub1"}},
             "pairs": {PAIR: pair},
-            "devices": {_DEVICE: device | {"humidities": HUMIDITIES}},
+            "devices": {_DEVICE: device | {"humidities": [*airs]}},
         }
     )
 
@@ -110,10 +110,10 @@ class TrainingStrips:
     number: int  #: of the point
 
     @classmethod
-    def of(cls, point: Point, plan: Plan, strips: int, seed: int) -> "TrainingStrips":
-        """Draw a number of strips."""
+    def of(cls, point: Point, plan: Plan, strips: int, seed: int, air: float = HUMIDITIES[0]) -> "TrainingStrips":
+        """Draw a number of strips, of a device that meets an air."""
         device = in_si(DesignedBeam, section_of_beam(plan, _DEVICE))
-        patch = patch_of(plan, Case(case_id(_DEVICE, HUMIDITIES[0])))
+        patch = patch_of(plan, Case(case_id(_DEVICE, air)))
         at = At(**{name: str(value) for name, value in patch._asdict().items()})
         settings = replace(in_si(Settings, GROUND.settings(plan, at, strips)), seed=seed)
         surfaces = surfaces_of(plan)
@@ -123,7 +123,10 @@ class TrainingStrips:
 
     def lengths(self, height: float, sizes: np.ndarray, number: int, change: Correction | None = None) -> np.ndarray:
         """Lengths that the middle of a number of bridges holds in a film of a height [m], of sizes (3,) [SI]."""
-        air, _ = air_of(height, 1.0, self.water.temperature)
+        return self.lengths_in(air_of(height, 1.0, self.water.temperature)[0], sizes, number, change)
+
+    def lengths_in(self, air: float, sizes: np.ndarray, number: int, change: Correction | None = None) -> np.ndarray:
+        """Lengths as of `lengths` at a humidity [-]."""
         corrected = replace(self, water=replace(self.water, correction=change))
         laws = sticking.fitted_laws(corrected.contact, air, corrected, (self.device.strip, self.device.width))
         bridge = replace(self.device, **dict(zip(("thickness", "gap", "residual_stress"), sizes, strict=True)))

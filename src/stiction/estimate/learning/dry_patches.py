@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from stiction.analysis.model_error import mean_ratios, scatter_ratios
 from stiction.config.cases import Case, case_id
@@ -59,17 +60,23 @@ def forces_of(plan: Plan, name: str, number: int) -> np.ndarray:
     return curves.pull_offs(dataset, DRY_AIR.humidity, water_of(plan))
 
 
-def change_of(plan: Plan, name: str, number: int) -> dict[str, float]:
-    """Ratio of the mean pull-off in full contact to that on summits, and power of its scatter, NaN if not found."""
+def study_of(plan: Plan, name: str, number: int) -> xr.Dataset | None:
+    """Strips of a point of a set in full contact, none if it is not found."""
     settings = in_si(full_contact.Settings, full_contact.settings_in_dry_air(plan, At(pair=PAIR)))
     settings_drawn = replace(settings, strips=SETS[name].strips[1], most=0, seed=SETS[name].seed)
     try:
-        study = full_contact.compute(
+        return full_contact.compute(
             surfaces_of(plan),
             f"estimate{number}",
             replace(settings_drawn, beam=replace(settings_drawn.beam, width=_WIDTH)),
         )
     except (NotConverged, ValueError):
+        return None
+
+
+def change_of(plan: Plan, name: str, number: int) -> dict[str, float]:
+    """Ratio of the mean pull-off in full contact to that on summits, and power of its scatter, NaN if not found."""
+    if (study := study_of(plan, name, number)) is None:
         return dict.fromkeys(("ratio", "ratio_error", "power"), np.nan)
     at, *models = full_contact.pull_offs(study)
     ratio, error = mean_ratios(*full_contact.moved_models(study)[..., 1], at, at)

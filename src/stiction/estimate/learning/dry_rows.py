@@ -9,14 +9,20 @@ import numpy as np
 
 from stiction.config.units import to_si
 from stiction.devices.risk import CONFIDENCE
+from stiction.estimate import dry_bridge
+from stiction.estimate.bridge import Stretched
 from stiction.estimate.dry import DryPatch, DryTip, lengths, reciprocals
-from stiction.estimate.learning import dry, dry_patches
+from stiction.estimate.dry_bridge import DryMiddle
+from stiction.estimate.learning import dry, dry_bridges, dry_patches
+from stiction.estimate.learning.bridge_rows import TAIL, are_known
 from stiction.estimate.learning.design import Point
 from stiction.estimate.learning.errors import Processes, Tested, beside, lengths_of
 from stiction.estimate.learning.fit import DesignRows
-from stiction.estimate.learning.rows import change_of, of_tips, rows_of, stored
+from stiction.estimate.learning.rows import change_of, of_lengths, of_tips, rows_of, stored
 from stiction.estimate.learning.training import FACTORS
+from stiction.estimate.length import NAMES
 from stiction.estimate.statistics import of_pair
+from stiction.estimate.table import Surrogate
 
 #: Coordinates that the changes of tips and of forces by full contact depend on. ASSUME: no others.
 OF_FULL, OF_RATIO = (0, 1, 2, 6, 7), (0, 1, 2, 6)
@@ -102,3 +108,54 @@ def tested_forces(folder: Path, sets: str, modulus: float, score: float, process
             changed = change_of(numbers).of(pressures)(pressures)
             true = lengths_of(of_tips(_relative(changed, patch)), -math.log(patch.flat_force))
             yield beside(point, true, score, lambda patch=patch, at=point: reciprocals(patch, *processes(at)))
+
+
+def bridges_of(point: Point, numbers: Mapping[str, Any], modulus: float, *of_patches: Surrogate) -> list[DryMiddle]:
+    """Bridges of a point, by size, with the pull-off pressure that processes of patches know."""
+    patch = DryPatch(of_pair(point.sides), float(numbers["constant"]), dry_bridge.AREA, modulus)
+    force = math.exp(-reciprocals(patch, *of_patches).logarithms[0]) / patch.area
+    width = to_si(point.width, "um")
+    return [
+        DryMiddle(patch, force, modulus * thickness**3, gap, width) for thickness, gap, _ in numbers["sizes"].tolist()
+    ]
+
+
+def _bare(numbers, modulus):
+    """Lengths without stress that are held as well as those of the bridges of a point, by size (sizes, n) [m]."""
+    for (thickness, _, stress), lengths_under in zip(numbers["sizes"].tolist(), numbers["lengths"], strict=True):
+        bare = Stretched.of(stress, thickness, modulus).bare
+        yield np.array([bare(each) if np.isfinite(each) else np.inf for each in np.sort(lengths_under).tolist()])
+
+
+def _stored_bridges(folder, name):
+    """Points of some sets with bridges in full contact."""
+    every = stored(folder / dry_bridges.FOLDER, name, dry_bridges.SETS)
+    return ((point, numbers) for point, numbers in every if "lengths" in numbers)
+
+
+def rows_of_middles(folder: Path, name: str, modulus: float, *of_patches: Surrogate) -> DesignRows:
+    """Rows of all bridges of a set with known lengths, in full contact."""
+    coordinates, values, surface = [], [], []
+    for point, numbers in _stored_bridges(folder, name):
+        bridges = zip(bridges_of(point, numbers, modulus, *of_patches), _bare(numbers, modulus), strict=True)
+        for bridge, bare in [each for each in bridges if are_known(each[1])]:
+            coordinates.append(bridge.coordinates)
+            values.append(of_lengths(bare / bridge.patch_length))
+            surface.append(point.number)
+    columns = {key: np.array([row[key] for row in values]) for key in NAMES}
+    return DesignRows(np.array(coordinates), columns, np.array(surface), columns["slope"])
+
+
+def tested_bridges(folder: Path, sets: str, modulus: float, score: float, processes: Processes) -> Iterator[Tested]:
+    """Lengths of bridges without stress that are held as well as those under it, of some sets, as `tested`."""
+    for point, numbers in _stored_bridges(folder, sets):
+        if not are_known(numbers["lengths"][0], TAIL):
+            continue
+        middle, *of_patches = processes(point)
+        true = lengths_of(of_lengths(next(_bare(numbers, modulus))), 0.0)
+
+        def estimate(at=(point, numbers, modulus, *of_patches), middle=middle):
+            """Lengths of the first bridge."""
+            return dry_bridge.lengths(bridges_of(*at)[0], middle)
+
+        yield beside(point, true, score, estimate)

@@ -197,6 +197,14 @@ def fitted(rows: DesignRows, name: str, columns: Sequence[int], number: int = NO
     return min(tried, key=lambda process: np.std(rows.weights * process.errors[name]))
 
 
+def everywhere(process: Fitted) -> Fitted:
+    """Process that is trusted all over its design. ASSUME: gaps between the nodes of few coordinates do not matter."""
+    content = process.content
+    ends = zip(*(content[name] for name in ("low", "high", "scale", "lengths")), strict=True)
+    across = math.hypot(*((high - low) / (scale * length) for low, high, scale, length in ends))
+    return replace(process, content=rounded(content | {"farthest": across}))
+
+
 def rounded(content: Any) -> Any:
     """Content with numbers of few digits, equal on all machines as far as their rounding allows."""
     if isinstance(content, Mapping):

@@ -17,7 +17,7 @@ from stiction.config.reading import read
 from stiction.config.units import from_si
 from stiction.contact.air import Air
 from stiction.estimate.answer import CHOSEN, CONFIDENCES, MARGINS, OF_OTHER_SOLIDS, TO_USE, answer, difficulty
-from stiction.estimate.learning import dry_rows
+from stiction.estimate.learning import dry_bridges, dry_rows
 from stiction.estimate.learning.design import SurfaceLaw
 from stiction.estimate.learning.dry import CONSTANTS, DryEffort
 from stiction.estimate.learning.errors import (
@@ -56,7 +56,7 @@ _RULE = "|---|---|---|---|---|---|---|---|---|"
 _HEAD = "| surfaces | number | refused | mean [%] | rms [%] | half [%] | beyond the end | inside 90 % | inside 95 % |"
 #: Words before both tables of drawn surfaces.
 _OF_LENGTHS = (
-    "`stiction estimate` knows cantilevers, bridges and stoppers in humid air and, without bridges, in dry air, and "
+    "`stiction estimate` knows cantilevers, bridges and stoppers in humid and dry air, and "
     "refuses all else. Below are lengths for 1 in 1000, of polysilicon at 300 K, beside those of drawn surfaces that "
     "it has not learnt, with tips changed by full contact as in a run, on strips of at most 12 µm. The error is the "
     "logarithm of the latter over the estimate, negative on the unsafe side. The end: that of 90 % which is the size "
@@ -87,6 +87,10 @@ _OTHER_BRIDGES = (
     "factors. No such bridge was tested in full contact. In dry air other moduli are exactly similar, and intervals "
     "are those above."
 )
+_BRIDGES_IN_DRY_AIR = (
+    "Lengths of bridges in dry air, by the closed form with the pull-off pressure of the estimate of stoppers. A "
+    "factor is learnt from {} points, without bridges that come free of two cracks:"
+)
 _FORCES_IN_DRY_AIR = "Forces in dry air, beside patches changed by {} strips of 3 µm in full contact:"
 
 
@@ -104,16 +108,23 @@ def lines(folder: Path) -> Iterator[str]:
 def _of_polysilicon(folder, table):
     """Words and rows of the tables of polysilicon."""
     dry, (of_tips, of_patches) = table["dry"], DryEffort.strips
-    for words, test, errors, first in (
-        (_OF_LENGTHS, tested, table, "tips"),
-        (_OF_BRIDGES, tested_bridges, table["bridges"], "middle"),
-        (_OF_FORCES, tested_forces, table["stoppers"], "forces"),
-        (_IN_DRY_AIR.format(*CONSTANTS, of_tips), dry_rows.tested, dry, "tips"),
-        (_FORCES_IN_DRY_AIR.format(of_patches), dry_rows.tested_forces, dry["stoppers"], "forces"),
+    of_bridges, of_forces = _BRIDGES_IN_DRY_AIR.format(_points(dry_bridges.SETS)), ("forces", "full")
+    for words, test, errors, names in (
+        (_OF_LENGTHS, tested, table, ("tips", "full")),
+        (_OF_BRIDGES, tested_bridges, table["bridges"], ("middle", "full")),
+        (_OF_FORCES, tested_forces, table["stoppers"], of_forces),
+        (_IN_DRY_AIR.format(*CONSTANTS, of_tips), dry_rows.tested, dry, ("tips", "full")),
+        (_FORCES_IN_DRY_AIR.format(of_patches), dry_rows.tested_forces, dry["stoppers"], of_forces),
+        (of_bridges, dry_rows.tested_bridges, dry["stoppers"] | dry["bridges"], ("middle", *of_forces)),
     ):
-        both = [Surrogate(**errors[name]) for name in (first, "full")]
-        learnt = table["modulus"], errors["tested_score"], lambda _, both=both: both
+        of_part = [Surrogate(**errors[name]) for name in names]
+        learnt = table["modulus"], errors["tested_score"], lambda _, of_part=of_part: of_part
         yield words, _rows_of(SETS, errors, lambda name, test=test, learnt=learnt: test(folder, name, *learnt))
+
+
+def _points(sets):
+    """Number of the points of all sets to learn from."""
+    return sum(effort.points for name, effort in sets.items() if name.startswith("learn"))
 
 
 def _of_other_solids(folder, table):

@@ -17,7 +17,8 @@ from stiction.constants import WATER_MOLAR_VOLUME, WATER_SURFACE_ENERGY
 from stiction.estimate import dry as of_dry_air
 from stiction.estimate.answer import CHOSEN, OF_OTHER_SOLIDS
 from stiction.estimate.bridge import COORDINATES as OF_BRIDGES
-from stiction.estimate.learning import dry, dry_patches, dry_rows, patches
+from stiction.estimate.dry_bridge import COORDINATES as OF_DRY_BRIDGES
+from stiction.estimate.learning import dry, dry_bridges, dry_patches, dry_rows, patches
 from stiction.estimate.learning.bridge_rows import rows_of_changes, rows_of_middles
 from stiction.estimate.learning.bridges import EVERY, TrainingStrips, sizes_of
 from stiction.estimate.learning.bridges import RANGES as RANGES_OF_BRIDGES
@@ -26,7 +27,7 @@ from stiction.estimate.learning.bridges import plan_of as plan_of_bridge
 from stiction.estimate.learning.design import FILMS, SurfaceLaw
 from stiction.estimate.learning.design import SIDES as SIDES_OF_PATCHES
 from stiction.estimate.learning.errors import Tested, margins_of, rest_of, scores, tested, tested_bridges, tested_forces
-from stiction.estimate.learning.fit import Fitted, fitted, group, rounded
+from stiction.estimate.learning.fit import Fitted, everywhere, fitted, group, rounded
 from stiction.estimate.learning.other_solids import rows as of_solids
 from stiction.estimate.learning.other_solids.ratios import ALL
 from stiction.estimate.learning.other_solids.rows import RowsOfRatio
@@ -92,14 +93,25 @@ def in_dry_air(folder: Path, modulus: float) -> dict[str, Any]:
     stoppers = {"sides": SIDES_OF_PATCHES, "coordinates": of_dry_air.OF_PATCHES}
     stoppers |= {"forces": forces.content, "full": ratios.content}
     stoppers |= errors_of(dry_rows.tested_forces, folder, modulus, forces, ratios)
+    bridges = bridges_in_dry_air(folder, modulus, forces, ratios)
     section = {"sets": {name: vars(effort) for name, effort in dry.SETS.items()}, "tips": tips.content}
     section |= {
         "coordinates": of_dry_air.OF_TIPS,
         "full": full.content,
         "stoppers": stoppers,
-        "control": dry.control() | dry_patches.control(),
+        "bridges": bridges,
+        "control": dry.control() | dry_patches.control() | dry_bridges.control(),
     }
     return section | errors_of(dry_rows.tested, folder, modulus, tips, full)
+
+
+def bridges_in_dry_air(folder: Path, modulus: float, *of_patches: Fitted) -> dict[str, Any]:
+    """Part of the table about bridges in dry air, beside processes of patches."""
+    known_patches = [Surrogate(**each.content) for each in of_patches]
+    rows = dry_rows.rows_of_middles(folder, "learn", modulus, *known_patches)
+    middle = everywhere(fitted(rows, "at_2", range(len(OF_DRY_BRIDGES)), 90))
+    section = {"coordinates": OF_DRY_BRIDGES, "middle": middle.content}
+    return section | errors_of(dry_rows.tested_bridges, folder, modulus, middle, *of_patches)
 
 
 def changes_of(rows_of: Callable[..., RowsOfRatio], folder: Path, modulus: float) -> dict[str, Any]:
@@ -173,20 +185,23 @@ def control_of_bridges() -> list[float]:
 Test = Callable[..., Iterator[Tested]]
 
 
-def errors_of(test: Test, folder: Path, modulus: float, first: Fitted, full: Fitted) -> dict[str, Any]:
-    """Numbers of the table about the errors of two processes: on summits and in full contact."""
-    of_rest = rest(test, folder, modulus, first, full)
-    of_margins = margins(test, folder, modulus, of_rest, *(Surrogate(**each.content) for each in (first, full)))
-    section = {"tested_score": TESTED, "left_out": first.scatter | full.scatter}
+def errors_of(test: Test, folder: Path, modulus: float, first: Fitted, *others: Fitted) -> dict[str, Any]:
+    """Numbers of the table about the errors of some processes, such as those on summits and in full contact."""
+    processes, left_out = (first, *others), first.scatter
+    for each in others:
+        left_out = left_out | {name: scatter for name, scatter in each.scatter.items() if name not in left_out}
+    of_rest = rest(test, folder, modulus, *processes)
+    of_margins = margins(test, folder, modulus, of_rest, *(Surrogate(**each.content) for each in processes))
+    section = {"tested_score": TESTED, "left_out": left_out}
     return section | {"rest": of_rest, "margins": of_margins}
 
 
-def rest(test: Test, folder: Path, modulus: float, first: Fitted, full: Fitted) -> float:
+def rest(test: Test, folder: Path, modulus: float, *processes: Fitted) -> float:
     """Rest of the difficulty from surfaces to learn from, each with the processes that have not learnt it."""
 
     def without(point):
         """Processes without a point."""
-        return tuple(Surrogate(**each.without[group(point.number)]) for each in (first, full))
+        return tuple(Surrogate(**each.without[group(point.number)]) for each in processes)
 
     return round(rest_of(list(test(folder, "learn", modulus, TESTED, without))), 4)
 
