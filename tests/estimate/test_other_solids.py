@@ -22,15 +22,16 @@ from stiction.estimate.bridge import MiddleState
 from stiction.estimate.force import reciprocals
 from stiction.estimate.learning import bridges, make, patches, training
 from stiction.estimate.learning import errors as of_estimates
+from stiction.estimate.learning.design import states
 from stiction.estimate.learning.other_solids import points, ratios, rows
 from stiction.estimate.learning.other_solids.ratios import ALL, material_of
-from stiction.estimate.learning.rows import states_of
+from stiction.estimate.learning.rows import of_forces, patches_of, states_of
 from stiction.estimate.length import Impossible, NotLearnt, lengths, on_solids
 from stiction.estimate.question import ENDS, OF_ATTRACTION, questions
 from stiction.estimate.solids import OF_POLYSILICON, OF_WATER, BesideWater, SolidPair, following
 from stiction.estimate.state import COORDINATES, OF_PATCHES, Film, PatchState, TipState, film
 from stiction.estimate.statistics import of_pair
-from stiction.estimate.table import Surrogate, content, known
+from stiction.estimate.table import Surrogate, content, known, processes
 from stiction.progress import without_progress
 
 LEVER = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30, "humidities": [0.7]}
@@ -431,6 +432,30 @@ def test_states_know_the_stiffness_of_solids_by_its_ratio_alone(modulus, wetting
         np.testing.assert_allclose(state.coordinates, of_polysilicon.coordinates, rtol=1e-9)
         control = replace(state, **{key: 2 * modulus}).coordinates
         assert control[1] == pytest.approx(state.coordinates[1] - math.log(2))
+
+
+def test_forces_change_with_stiffness_as_was_learnt():
+    """Nearer to contacts that were not learnt than without a change, and than a modulus among the coordinates."""
+    effort, learnt = training.SETS["check_any"], content()["stoppers"]
+    forces, _, *changes = processes(learnt, "forces", "full")
+    stiffness, errors = BesideWater(stiffness=2.5), []
+    for point in effort.all[:4]:
+        sides, airs = patches.sides_of(point, effort.seed, effort.law), states(1, point.number, effort.seed)
+        (own,) = patches_of(point, {"sides": np.array(sides), "airs": airs}, 164e9)
+        plan, material = patches.plan_of(point, sides, patches.base()), material_of(stiffness)
+        both = plan, training.with_materials(plan, material, material)
+        with without_progress():
+            pressures = [patches.forces_of(point, each, airs[:, 0], 100, effort.seed)[0] for each in both]
+        before, true = (of_forces(each, own)["at_2"] for each in pressures)
+        stiff = replace(own, modulus=stiffness.stiffness * own.modulus)
+        at_once = on_solids(forces, replace(stiff, beside_water=stiffness), *changes)["at_2"]
+        by_coordinates, on_polysilicon = (forces.at(each.coordinates).of["at_2"] for each in (stiff, own))
+        errors.append(
+            [each - (true - before) for each in (at_once - on_polysilicon, by_coordinates - on_polysilicon, 0)]
+        )
+    of_learnt, of_coordinates, of_nothing = np.sqrt(np.mean(np.square(errors), axis=0))
+    assert of_learnt < of_coordinates, "the first control"
+    assert of_learnt < of_nothing, "the second control"
 
 
 def test_bridges_of_stiffer_solids_are_thinner_so_that_their_coordinates_stay():

@@ -10,8 +10,7 @@ import pytest
 from stiction.config.reading import read
 from stiction.estimate.answer import in_one_air
 from stiction.estimate.question import questions
-from stiction.estimate.solids import BesideWater
-from stiction.estimate.state import TipState
+from stiction.estimate.solids import OF_POLYSILICON, SolidPair
 from stiction.estimate.table import content, known
 
 ROOT = Path(__file__).parents[2]
@@ -70,7 +69,6 @@ def test_the_modulus_of_both_solids_acts_as_in_a_run(air):
 
 def test_a_modulus_beside_water_is_not_that_of_another_film(monkeypatch):
     """The control: solids taken as polysilicon below a film of another energy, of which nothing was learnt."""
-    monkeypatch.setattr(TipState, "as_polysilicon", property(lambda state: state))
-    monkeypatch.setattr(BesideWater, "logarithms", property(lambda _: (0.0, 0.0, 0.0)))
+    monkeypatch.setattr(SolidPair, "beside_water", lambda *_: OF_POLYSILICON)
     own, (slope, error) = estimated(0.92)["Young's modulus"], computed(0.92)["Young's modulus"]
     assert abs(own - slope) > 4 * error

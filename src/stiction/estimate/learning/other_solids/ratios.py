@@ -2,7 +2,7 @@
 
 Tips, patches and bridges on summits, on the strips of some points of `stiction.estimate.learning.training`,
 `stiction.estimate.learning.patches` and `stiction.estimate.learning.bridges`, so that what changes is one ratio alone:
-the attraction through water with what follows from it through air, then that through air, then the stiffness:
+the attraction through water with what follows from it through air, then that through air, or the stiffness:
 
     python -m stiction.estimate.learning.other_solids.ratios FOLDER [SET [FIRST LAST]]
 """
@@ -71,9 +71,9 @@ class LearntRatio:
 THROUGH_WATER = LearntRatio("through_water", (0.04, 8.0), "attraction", None, 32, 28)
 #: Solids of the combining relation have 1.4 to 2.7: polysilicon has less, contact angles and unlike sides add.
 THROUGH_AIR = LearntRatio("through_air", (0.5, 4.0), "attraction_through_air", THROUGH_WATER, 24, 16)
-#: From 60 GPa to 400 GPa on sides of which water has a contact angle of 80°.
-STIFFNESS = LearntRatio("stiffness", (0.3, 12.0), "stiffness", THROUGH_AIR, 24, 16)
-#: All, each after that beside whose points its points are.
+#: From 60 GPa to 400 GPa on sides of which water has a contact angle of 80°. ASSUME: alike at any attraction.
+STIFFNESS = LearntRatio("stiffness", (0.3, 12.0), "stiffness", None, 80, 40)
+#: All, in the order of `stiction.estimate.table.CHANGES`.
 ALL = (THROUGH_WATER, THROUGH_AIR, STIFFNESS)
 
 
