@@ -36,7 +36,7 @@ def with_keys(keys, text=FILE):
 
 def test_drying_decides_the_length_to_use_and_has_a_sentence_for_each_liquid(tmp_path, capsys):
     first, *lines = printed(tmp_path, capsys, FILE)
-    assert first.startswith("1 in 1000 sticks between 228 and ")
+    assert first.startswith("1 in 1000 sticks between 221 and ")
     assert first.endswith(" µm (90 %): use at most 199, or it can collapse while water dries.")
     assert lines == [
         OF_LENGTHS,
@@ -47,9 +47,9 @@ def test_drying_decides_the_length_to_use_and_has_a_sentence_for_each_liquid(tmp
         "At 199 µm it does not touch below a half-sine shock of 225 000 g.",
     ]
     assert printed(tmp_path, capsys, NO_LIQUIDS) == [
-        first.partition(": use")[0] + ": use at most 228.",
+        first.partition(": use")[0] + ": use at most 221.",
         OF_LENGTHS,
-        "At 228 µm it does not touch below a half-sine shock of 131 000 g.",
+        "At 221 µm it does not touch below a half-sine shock of 146 000 g.",
     ]
 
 
@@ -72,7 +72,7 @@ def test_a_liquid_that_does_not_wet_has_no_length(tmp_path, capsys):
     text = FILE.replace("surface_tension_mN_per_m: 72", "surface_tension_mN_per_m: 72, contact_angle_deg: 100")
     lines = printed(tmp_path, capsys, text)
     assert lines[2] == "Beams of any length stand while water dries."
-    assert "use at most 228." in lines[0]
+    assert "use at most 221." in lines[0]
 
 
 def test_a_shock_does_not_bring_it_down_or_does_and_a_run_says_what_to_use(tmp_path, capsys):

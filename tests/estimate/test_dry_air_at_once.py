@@ -12,7 +12,7 @@ from stiction.contact.correction import ElasticChange
 from stiction.contact.environment import flooded_law
 from stiction.contact.vanderwaals import DugdaleAttraction
 from stiction.estimate import dry
-from stiction.estimate.answer import answer
+from stiction.estimate.answer import TO_USE, answer
 from stiction.estimate.learning.training import SETS
 from stiction.estimate.length import NotLearnt, normal_score
 from stiction.estimate.question import questions
@@ -172,7 +172,7 @@ def test_fewer_stick_beyond_and_intervals_are_nested(device):
 
 
 def test_intervals_are_those_of_dry_air():
-    (low, high), part = found().chosen.intervals["90"], content()["dry"]
+    row, part = found().chosen, content()["dry"]
     tip = dry.DryTip(
         of_pair([content()["library"][name] for name in ("B2", "Sub1")]),
         POLYSILICON,
@@ -182,7 +182,10 @@ def test_intervals_are_those_of_dry_air():
     )
     slope = dry.lengths(tip, 20e-6, *dry.processes(part, "tips", "full")).slope
     score = max(1.0, normal_score(1e-3) / part["tested_score"])
-    assert math.log(high / low) == pytest.approx(2 * part["margins"]["90"] * math.hypot(slope, part["rest"]) * score)
+    unit, (low, high) = math.hypot(slope, part["rest"]) * score, row.intervals["90"]
+    assert math.log(row.length / low) == pytest.approx(part["margins"][TO_USE] * unit)
+    assert math.log(high / row.length) == pytest.approx(part["margins"]["90"] * unit)
+    assert part["margins"][TO_USE] > 1.1 * part["margins"]["90"], "control"
 
 
 @pytest.mark.parametrize(

@@ -9,9 +9,10 @@ from scipy.stats import binom
 
 from stiction.analysis.model_error import few_tip_ratios
 from stiction.config.units import to_si
+from stiction.estimate.answer import TO_USE
 from stiction.estimate.learning import errors as of_estimates
 from stiction.estimate.learning.design import FILMS
-from stiction.estimate.learning.errors import conformal, coverage, rest_of, scores
+from stiction.estimate.learning.errors import coverage, margins_of, rest_of, scores
 from stiction.estimate.learning.training import FACTORS, SETS, TrainingTips, base, changes_of, plan_of
 from stiction.estimate.length import most
 from stiction.estimate.promise import kept
@@ -107,17 +108,30 @@ def test_the_rest_of_the_difficulty_is_that_of_normal_errors_of_any_size(rest):
     assert np.all(np.sign(scores(of_errors(slopes, errors), rest)) == np.sign(errors))
 
 
-@pytest.mark.parametrize(("law", "is_kept"), [("normal", True), ("laplace", True), ("exponential", False)])
-def test_an_end_of_a_conformal_interval_keeps_its_promise_unless_all_errors_are_on_one_side(law, is_kept):
-    rng = np.random.default_rng(6)
+@pytest.mark.parametrize("law", ["normal", "laplace", "exponential"])
+@pytest.mark.parametrize("surfaces", [20, 50])
+def test_the_end_to_use_keeps_its_promise_for_errors_of_any_law_and_half_of_an_interval_does_not(law, surfaces):
+    rng, beyond = np.random.default_rng(6), {TO_USE: [], "90": []}
 
     def drawn(number):
         """Errors over their difficulties, negative on the unsafe side."""
         return -getattr(rng, law)(size=number)
 
-    beyond = [np.mean(drawn(400) < -conformal(drawn(50), 0.9)) for _ in range(400)]
-    allowed, error = 1 - kept("90") / 100, np.std(beyond) / math.sqrt(len(beyond))
-    assert (np.mean(beyond) < allowed + 4 * error) == is_kept
+    for _ in range(600):
+        margins, further = margins_of(drawn(surfaces)), drawn(400)
+        assert margins["90"] <= margins[TO_USE] <= margins["95"]
+        for name, of_name in beyond.items():
+            of_name.append(np.mean(further < -margins[name]))
+    allowed = 1 - kept("90") / 100
+    assert np.mean(beyond[TO_USE]) < allowed + 3 * np.std(beyond[TO_USE]) / math.sqrt(600)
+    if law == "exponential":  # all errors are on the unsafe side
+        assert np.mean(beyond["90"]) > 1.5 * allowed, "control"
+
+
+def test_the_end_to_use_is_no_nearer_than_half_of_the_interval():
+    errors = np.abs(np.random.default_rng(1).normal(size=50))
+    assert margins_of(errors)[TO_USE] == margins_of(errors)["90"]
+    assert margins_of(-errors)[TO_USE] > margins_of(errors)[TO_USE], "control"
 
 
 @pytest.mark.parametrize(("inside", "number"), [(9, 10), (47, 50), (1, 30)])

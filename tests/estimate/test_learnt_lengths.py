@@ -130,7 +130,7 @@ def test_normal_scores_are_those_of_the_normal_distribution(fraction):
 def test_conformal_intervals_cover_further_errors_and_half_of_them_do_not(confidence, surfaces):
     rng, trials = np.random.default_rng(3), 2000
     errors = rng.standard_t(3, (trials, surfaces + 1))
-    halves = np.array([conformal(row[:-1], confidence) for row in errors])
+    halves = np.array([conformal(np.abs(row[:-1]), confidence) for row in errors])
     inside = np.sum(np.abs(errors[:, -1]) <= halves)
     # The exact rate is between the confidence and 1 / (surfaces + 1) above it.
     assert binom.cdf(inside, trials, confidence) > 1e-4

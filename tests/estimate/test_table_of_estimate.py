@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from stiction.estimate import dry as of_dry_air
-from stiction.estimate.answer import CONFIDENCES
+from stiction.estimate.answer import CONFIDENCES, TO_USE
 from stiction.estimate.bridge import COORDINATES as OF_BRIDGES
 from stiction.estimate.dry_bridge import COORDINATES as OF_DRY_BRIDGES
 from stiction.estimate.learning import dry, dry_bridges, dry_patches, training
@@ -61,7 +61,8 @@ def test_the_table_has_what_the_estimate_reads():
     assert list(of_dry_air.OF_PATCHES) == in_dry_air["stoppers"]["coordinates"]
     assert list(OF_DRY_BRIDGES) == in_dry_air["bridges"]["coordinates"]
     for part in (content(), stoppers, bridges, in_dry_air, in_dry_air["stoppers"], in_dry_air["bridges"]):
-        assert 0 < part["margins"][CONFIDENCES[0]] <= part["margins"][CONFIDENCES[1]] < 5
+        first, last = (part["margins"][name] for name in CONFIDENCES)
+        assert 0 < first <= part["margins"][TO_USE] <= last < 5
     others = [Surrogate(**part[name]) for part, name in ((stoppers, "forces"), (bridges, "middle"))]
     others += [Surrogate(**part["full"]) for part in (stoppers, bridges)]
     others += [Surrogate(**in_dry_air["bridges"]["middle"])]

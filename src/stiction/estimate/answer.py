@@ -31,9 +31,13 @@ FRACTIONS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 CHOSEN = FRACTIONS[2]
 #: Key of the margins of other solids than polysilicon, beside those of polysilicon.
 OF_OTHER_SOLIDS = "margins_of_other_solids"
+#: Key of the margin towards the end to use, beside those by confidence.
+TO_USE = "to_use"
 #: Confidences of the intervals, and quantiles of Student's distribution with three degrees of freedom for them.
 CONFIDENCES = ("90", "95")
 _STUDENT = {"90": 2.353363, "95": 3.182446}
+#: Keys of the margins on the unsafe side and on the other one, by confidence. The end of 90 % is that to use.
+MARGINS = {"90": (TO_USE, "90"), "95": ("95", "95")}
 
 
 @dataclass(frozen=True)
@@ -175,8 +179,11 @@ class LengthsInAir:
     def ends(self, score: float, confidence: str) -> tuple[float, float]:
         """Ends of the interval of that of a bare length."""
         mean, scatter = self.centre(score)
-        half = math.hypot(_margin(self.errors, confidence, score, self.stated.slope), _STUDENT[confidence] * scatter)
-        return mean - half, mean + half
+        below, above = (
+            math.hypot(_margin(self.errors, key, score, self.stated.slope), _STUDENT[confidence] * scatter)
+            for key in MARGINS[confidence]
+        )
+        return mean - below, mean + above
 
     def length(self, score: float) -> float:
         """Length at a normal score [m]."""
@@ -205,12 +212,12 @@ def difficulty(slope: float, rest: float) -> float:
     return math.hypot(slope, rest)
 
 
-def _margin(errors, confidence, score, slope):
-    """Half of the interval of the logarithm of a length by the error of the estimate.
+def _margin(errors, key, score, slope):
+    """Part of the interval of the logarithm of a length by the error of the estimate.
 
     ASSUME: beyond the score that was tested, it grows in proportion to the score.
     """
-    return errors["margins"][confidence] * difficulty(slope, errors["rest"]) * max(1.0, score / errors["tested_score"])
+    return errors["margins"][key] * difficulty(slope, errors["rest"]) * max(1.0, score / errors["tested_score"])
 
 
 def _worst(rows):

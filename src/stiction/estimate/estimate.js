@@ -504,8 +504,9 @@ const pulledBy = (added) => ({length: (bare) => bare / (1 + added * bare), bare:
 
 // answer
 const FRACTIONS = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6], STUDENT = {90: 2.353363, 95: 3.182446};
-function margin(errors, confidence, score, slope) {
-  return errors.margins[confidence] * Math.hypot(slope, errors.rest) * Math.max(1, score / errors.tested_score);
+const MARGINS = {90: ["to_use", "90"], 95: ["95", "95"]}; // margins on the unsafe side and on the other one
+function margin(errors, key, score, slope) {
+  return errors.margins[key] * Math.hypot(slope, errors.rest) * Math.max(1, score / errors.tested_score);
 }
 function centre(one, score) {
   if (!one.members.length) return [Math.log(lengthAt(one.stated, score)), 0];
@@ -538,8 +539,9 @@ function answer(question, table) {
 }
 const logarithmOf = (one, score, averaged) => averaged ? centre(one, score)[0] : Math.log(lengthAt(one.stated, score));
 function endsOf(one, score, confidence) {
-  const [mean, scatter] = centre(one, score), half = Math.hypot(margin(one.errors, confidence, score, one.stated.slope), STUDENT[confidence] * scatter);
-  return [mean - half, mean + half];
+  const [mean, scatter] = centre(one, score);
+  const [below, above] = MARGINS[confidence].map((key) => Math.hypot(margin(one.errors, key, score, one.stated.slope), STUDENT[confidence] * scatter));
+  return [mean - below, mean + above];
 }
 function scoreAt(logarithm, value) {
   let low = -9, high = SCORES[0];

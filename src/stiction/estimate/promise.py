@@ -1,11 +1,13 @@
-"""Promise about the size to use at once, in the words of the command and of the page. Plain Python."""
+"""Promise about the size to use at once, in the words of the command and of the page. Plain Python.
+
+The size to use is an end of an interval, and only errors on one side of it are unsafe. Half of the interval towards
+them is the larger of two split conformal quantiles: of the sizes of errors at the confidence of the interval, and of
+the errors on the unsafe side at `kept`. The promise thus holds whatever the errors are distributed like.
+"""
 
 
 def kept(confidence: str) -> float:
-    """Devices out of 100 whose true size is on the safe side of one end of an interval of a confidence [%].
-
-    ASSUME: as many true sizes lie beyond either end. docs/tables/estimate.md counts those beyond the end to use.
-    """
+    """Devices out of 100 whose true size is at least on the safe side of an end of an interval of a confidence [%]."""
     return (100 + float(confidence)) / 2
 
 
@@ -15,7 +17,7 @@ def promise(confidence: str, is_force: bool) -> str:
     Examples
     --------
     >>> promise("90", is_force=False)
-    'For 95 of 100 such devices a run finds a longer length.'
+    'For at least 95 of 100 such devices a run finds a longer length.'
     """
     size = "smaller force" if is_force else "longer length"
-    return f"For {kept(confidence):g} of 100 such devices a run finds a {size}."
+    return f"For at least {kept(confidence):g} of 100 such devices a run finds a {size}."

@@ -10,7 +10,7 @@ from scipy.optimize import minimize_scalar
 from scipy.special import betaincinv
 
 from stiction.devices.risk import CONFIDENCE
-from stiction.estimate.answer import difficulty
+from stiction.estimate.answer import CONFIDENCES, TO_USE, difficulty
 from stiction.estimate.bridge import lengths as lengths_of_bridges
 from stiction.estimate.force import reciprocals
 from stiction.estimate.learning.bridge_rows import TAIL, of_middle, with_changes
@@ -20,6 +20,7 @@ from stiction.estimate.learning.patches import FOLDER
 from stiction.estimate.learning.rows import change_of, of_forces, of_tips, patches_of, states_of, stored
 from stiction.estimate.learning.training import FACTORS, changes_of
 from stiction.estimate.length import NAMES, Lengths, NotLearnt, lengths
+from stiction.estimate.promise import kept
 from stiction.estimate.table import Surrogate
 from stiction.streams import stream
 
@@ -114,10 +115,24 @@ def rest_of(surfaces: Sequence[Tested]) -> float:
     return math.exp(minimize_scalar(cost, bounds=ends, method="bounded").x)
 
 
-def conformal(errors: np.ndarray, confidence: float) -> float:
-    """Half of a split conformal interval, from errors on surfaces (n,), infinite where they are too few."""
-    rank = math.ceil(confidence * (len(errors) + 1))
-    return float(np.sort(np.abs(errors))[rank - 1]) if rank <= len(errors) else math.inf
+def conformal(sizes: np.ndarray, confidence: float) -> float:
+    """Split conformal bound of a further size of an error, from those on surfaces (n,), infinite if they are too few.
+
+    Sizes are absolute for half of an interval, or on one side for one of its ends.
+    """
+    rank = math.ceil(confidence * (len(sizes) + 1))
+    return float(np.sort(sizes)[rank - 1]) if rank <= len(sizes) else math.inf
+
+
+def margins_of(errors: np.ndarray) -> dict[str, float]:
+    """Margins of intervals by confidence, and that to the end to use, from errors over their difficulties (n,).
+
+    The last is no less than that of both sides. It keeps its promise for errors of any law, see
+    `stiction.estimate.promise`.
+    """
+    both = {name: conformal(np.abs(errors), float(name) / 100) for name in CONFIDENCES}
+    first = CONFIDENCES[0]
+    return both | {TO_USE: max(both[first], conformal(-errors, kept(first) / 100))}
 
 
 def scores(surfaces: Sequence[Tested], rest: float) -> np.ndarray:

@@ -16,7 +16,7 @@ import numpy as np
 from stiction.config.reading import read
 from stiction.config.units import from_si
 from stiction.contact.air import Air
-from stiction.estimate.answer import CHOSEN, CONFIDENCES, OF_OTHER_SOLIDS, answer, difficulty
+from stiction.estimate.answer import CHOSEN, CONFIDENCES, MARGINS, OF_OTHER_SOLIDS, TO_USE, answer, difficulty
 from stiction.estimate.learning import dry_bridges, dry_rows
 from stiction.estimate.learning.design import SurfaceLaw
 from stiction.estimate.learning.dry import CONSTANTS, DryEffort
@@ -59,8 +59,8 @@ _OF_LENGTHS = (
     "`stiction estimate` knows cantilevers, bridges and stoppers in humid and dry air, and "
     "refuses all else. Below are lengths for 1 in 1000, of polysilicon at 300 K, beside those of drawn surfaces that "
     "it has not learnt, with tips changed by full contact as in a run, on strips of at most 12 µm. The error is the "
-    "logarithm of the latter over the estimate, negative on the unsafe side. Half: median of half of the interval of "
-    "90 %. The end: that of 90 % on the safe side, which is the size to use. In brackets: 95 % range of the fraction. "
+    "logarithm of the latter over the estimate, negative on the unsafe side. The end: that of 90 % which is the size "
+    "to use. Half: median from the estimate to this end. In brackets: 95 % range of the fraction. "
     "Drying, shock and pull-in are closed forms of [the life](../life.md). Where water condenses, the estimate of a "
     "device with `shock_g` leaves the size to a run."
 )
@@ -285,18 +285,21 @@ class RowOfSurfaces:
     @property
     def is_beyond(self) -> np.ndarray:
         """Whether their sizes are on the unsafe side of the end to use (n,)."""
-        return self._scores < -self.of_part["margins"][CONFIDENCES[0]]
+        return self._scores < -self.of_part["margins"][TO_USE]
 
     @property
     def line(self) -> str:
         """Row as a text."""
         answered, margins = self._answered, self.of_part["margins"]
         errors = np.array([surface.error for surface in answered])
-        halves = [margins[CONFIDENCES[0]] * difficulty(surface.slope, self.of_part["rest"]) for surface in answered]
+        halves = [margins[TO_USE] * difficulty(surface.slope, self.of_part["rest"]) for surface in answered]
         numbers = [np.mean(errors), np.sqrt(np.mean(errors**2)), np.median(halves)]
         cells = [self.words, len(self.surfaces), len(self.surfaces) - len(answered)]
         cells += [*(f"{100 * number:.1f}" for number in numbers), _counted(self.is_beyond)]
-        cells += [_counted(np.abs(self._scores) <= margins[name]) for name in CONFIDENCES]
+        cells += [
+            _counted((-margins[unsafe] <= self._scores) & (self._scores <= margins[safe]))
+            for unsafe, safe in MARGINS.values()
+        ]
         return f"| {' | '.join(map(str, cells))} |"
 
 

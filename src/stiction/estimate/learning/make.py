@@ -15,7 +15,7 @@ from stiction.config.reading import paper
 from stiction.config.units import to_si
 from stiction.constants import WATER_MOLAR_VOLUME, WATER_SURFACE_ENERGY
 from stiction.estimate import dry as of_dry_air
-from stiction.estimate.answer import CHOSEN, CONFIDENCES, OF_OTHER_SOLIDS
+from stiction.estimate.answer import CHOSEN, OF_OTHER_SOLIDS
 from stiction.estimate.bridge import COORDINATES as OF_BRIDGES
 from stiction.estimate.dry_bridge import COORDINATES as OF_DRY_BRIDGES
 from stiction.estimate.learning import dry, dry_bridges, dry_patches, dry_rows, patches
@@ -26,7 +26,7 @@ from stiction.estimate.learning.bridges import base as base_of_bridges
 from stiction.estimate.learning.bridges import plan_of as plan_of_bridge
 from stiction.estimate.learning.design import FILMS, SurfaceLaw
 from stiction.estimate.learning.design import SIDES as SIDES_OF_PATCHES
-from stiction.estimate.learning.errors import Tested, conformal, rest_of, scores, tested, tested_bridges, tested_forces
+from stiction.estimate.learning.errors import Tested, margins_of, rest_of, scores, tested, tested_bridges, tested_forces
 from stiction.estimate.learning.fit import Fitted, everywhere, fitted, group, rounded
 from stiction.estimate.learning.other_solids import rows as of_solids
 from stiction.estimate.learning.other_solids.ratios import ALL
@@ -207,15 +207,15 @@ def rest(test: Test, folder: Path, modulus: float, *processes: Fitted) -> float:
 
 
 def margins(test: Test, folder: Path, modulus: float, of_rest: float, *processes: Surrogate) -> dict[str, float]:
-    """Half of the intervals of the logarithm of a length over its difficulty, by confidence.
+    """Parts of the intervals of the logarithm of a length over its difficulty, as `margins_of`.
 
     The widest of those of each law, so that an interval holds for surfaces of either.
     """
     by_law = [
-        scores(list(test(folder, f"decide_{law}", modulus, TESTED, lambda _: processes)), of_rest)
+        margins_of(scores(list(test(folder, f"decide_{law}", modulus, TESTED, lambda _: processes)), of_rest))
         for law in (SurfaceLaw.TYPICAL, SurfaceLaw.ANY)
     ]
-    return {name: round(max(conformal(errors, int(name) / 100) for errors in by_law), 4) for name in CONFIDENCES}
+    return {name: round(max(each[name] for each in by_law), 4) for name in by_law[0]}
 
 
 def margins_of_other_solids(folder: Path, table: Mapping[str, Any]) -> dict[str, dict[str, float]]:
@@ -228,7 +228,7 @@ def margins_of_other_solids(folder: Path, table: Mapping[str, Any]) -> dict[str,
         "": _growth(of_solids.tested, folder, table, "tips"),
         "stoppers": _growth(of_solids.tested_forces, folder, table["stoppers"], "forces"),
     }
-    growth["bridges"] = {name: max(each[name] for each in growth.values()) for name in CONFIDENCES}
+    growth["bridges"] = {name: max(each[name] for each in growth.values()) for name in growth[""]}
     margins = {section: (table[section] if section else table)["margins"] for section in growth}
     return {
         section: {name: round(margins[section][name] * factor, 4) for name, factor in factors.items()}
@@ -241,9 +241,8 @@ def _growth(test, folder, section, first):
     learnt = processes(rounded(section), first, "full")
     sets = [f"decide_{law}" for law in (SurfaceLaw.TYPICAL, SurfaceLaw.ANY)]
     surfaces = [surface for name in sets for surface in test(folder, name, TESTED, learnt, as_polysilicon=False)]
-    errors = scores(surfaces, section["rest"])
-    margins = section["margins"]
-    return {name: max(1.0, conformal(errors, int(name) / 100) / margins[name]) for name in CONFIDENCES}
+    of_others, margins = margins_of(scores(surfaces, section["rest"])), section["margins"]
+    return {name: max(1.0, of_others[name] / margin) for name, margin in margins.items()}
 
 
 if __name__ == "__main__":
