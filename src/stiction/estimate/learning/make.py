@@ -209,7 +209,8 @@ def rest(test: Test, folder: Path, modulus: float, *processes: Fitted) -> float:
 def margins(test: Test, folder: Path, modulus: float, of_rest: float, *processes: Surrogate) -> dict[str, float]:
     """Parts of the intervals of the logarithm of a length over its difficulty.
 
-    As of `stiction.estimate.learning.errors.margins_of`, the widest of those of each law, so that an interval holds for surfaces of either.
+    As of `stiction.estimate.learning.errors.margins_of`, the widest of those of each law, so that an interval
+    holds for surfaces of either.
     """
     by_law = [
         margins_of(scores(list(test(folder, f"decide_{law}", modulus, TESTED, lambda _: processes)), of_rest))
