@@ -2,7 +2,7 @@
 
 import textwrap
 from collections.abc import Iterable, Mapping
-from itertools import chain, product
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -187,40 +187,52 @@ def chart(
         for at in product(dataset.gap.values, dataset["shape"].values[::-1])
     ]
     figure, columns, lines = columns_of_panels(len(subjects), 1, at_most_double(1.5 * SINGLE), _PANEL)
-    built: dict[Axes, list] = {}
-    for panel, (name, gap, shape) in zip(columns[:, 0], subjects, strict=True):
+    drawn = list(zip(columns[:, 0], subjects, strict=True))
+    built = {}
+    for panel, (name, gap, shape) in drawn:
         curves = wholes[name].sel(gap=gap, shape=shape)
-        thickness, own_gap, answer = (answers or {}).get(name, (np.nan, np.nan, None))
-        has_its_gap = np.isclose(gap, own_gap, rtol=1e-6, atol=0)
-        is_its_own = has_its_gap & np.isclose(curves.thickness, thickness, rtol=1e-6, atol=0)
-        _thicknesses(panel, curves, shape, placed[name], is_its_own)
-        if has_its_gap and not END_STATES[shape].only_if:
-            built[panel] = _mark_sizes_to_build(panel, _limits(curves.isel(thickness=is_its_own)), answer, placed[name])
-        low, high = panel.dataLim.intervaly
-        panel.set(xlabel="relative humidity [–]", ylabel=_OF_CHART, ylim=(0.95 * low, high + _ROOM * (high - low)))
-        humidity_axis(panel, placed[name])
-        only = "\nno size to build here" * bool(END_STATES[shape].only_if)
-        style = {"xycoords": "axes fraction", "ha": "right", "va": "top", "fontsize": 7, "path_effects": OUTLINED}
-        panel.annotate(f"above each line: more stick{only}", (0.98, 0.98), **style)
-        marks = [
-            f" ({name})" * int(is_own) + _marks_of_warnings(numbers.get((name, thickness, gap, shape), ()))
-            for thickness, is_own in zip(curves.thickness.values, is_its_own, strict=True)
-        ]
-        _name_thicknesses(panel, curves, marks)
+        marks = {t: _marks_of_warnings(numbers.get((name, t, gap, shape), ())) for t in curves.thickness.values}
+        built[panel] = _lines_of_chart(panel, name, curves, (answers or {}).get(name), placed[name], marks)
     titles = [
-        f"{name}, gap {TO_UM * gap:g} µm, {END_STATES[shape].title}{_BUILD_THESE * bool(built.get(panel))}"
-        for panel, (name, gap, shape) in zip(columns[:, 0], subjects, strict=True)
+        f"{name}, gap {TO_UM * gap:g} µm, {END_STATES[shape].title}{_BUILD_THESE * bool(built[panel])}"
+        for panel, (name, gap, shape) in drawn
     ]
     letter_lines(lines, [_filled(title, figure, lines[0].shape[1]) for title in titles])
-    shown = sorted(zip(*handles(*columns[:, 0]), strict=True), key=lambda entry: isinstance(entry[0], PolyCollection))
-    below = ["axes of panels differ"] * (len(subjects) > 1), [refer_to_warnings(figure, warnings)]
-    shown += [(Line2D([], [], linestyle=""), text) for text in chain(*below) if text]
-    legend_outside(figure, ([entry for entry, _ in shown], [_filled(text, figure) for _, text in shown]), "lower", 2)
+    _legend_of_chart(figure, columns[:, 0], refer_to_warnings(figure, warnings))
     figure.draw_without_rendering()  # lays the panels out, so that words can be clear of lines
     for panel, sizes in built.items():
         for size in sizes:
             _name_size(panel, *size)
     return figure
+
+
+def _lines_of_chart(panel, name, curves, of_device, placed, marks):
+    """Limits in one gap and shape, with marks of warnings by thickness; sizes to build, of which words follow."""
+    thickness, gap, answer = of_device or (np.nan, np.nan, None)
+    shape = str(curves["shape"].values)
+    has_its_gap = np.isclose(curves.gap, gap, rtol=1e-6, atol=0)
+    is_its_own = has_its_gap & np.isclose(curves.thickness, thickness, rtol=1e-6, atol=0)
+    _thicknesses(panel, curves, shape, placed, is_its_own)
+    sizes, is_whole = [], not END_STATES[shape].only_if
+    if has_its_gap and is_whole:
+        sizes = _mark_sizes_to_build(panel, _limits(curves.isel(thickness=is_its_own)), answer, placed)
+    low, high = panel.dataLim.intervaly
+    panel.set(xlabel="relative humidity [–]", ylabel=_OF_CHART, ylim=(0.95 * low, high + _ROOM * (high - low)))
+    humidity_axis(panel, placed)
+    only = "" if is_whole else "\nno size to build here"
+    style = {"xycoords": "axes fraction", "ha": "right", "va": "top", "fontsize": 7, "path_effects": OUTLINED}
+    panel.annotate(f"above each line: more stick{only}", (0.98, 0.98), **style)
+    own = [f" ({name})" * int(is_own) for is_own in is_its_own]
+    _name_thicknesses(panel, curves, [f"{who}{mark}" for who, mark in zip(own, marks.values(), strict=True)])
+    return sizes
+
+
+def _legend_of_chart(figure, panels_of_chart, reference):
+    """Legend below all panels: lines, then bands, then words without a line."""
+    shown = sorted(zip(*handles(*panels_of_chart), strict=True), key=lambda entry: isinstance(entry[0], PolyCollection))
+    words = ["axes of panels differ" * (len(panels_of_chart) > 1), reference]
+    shown += [(Line2D([], [], linestyle=""), text) for text in words if text]
+    legend_outside(figure, ([entry for entry, _ in shown], [_filled(text, figure) for _, text in shown]), "lower", 2)
 
 
 def _limits(curves):
