@@ -9,7 +9,7 @@ the attraction through water with what follows from it through air, then that th
 
 import math
 import sys
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -42,6 +42,7 @@ class LearntRatio:
     before: "LearntRatio | None"  #: that of the points at which it does not change, none for polysilicon
     points: int  #: of each set, the first ones of polysilicon
     bridges: int  #: of these, some of which have bridges
+    random: Callable[[int, int], np.random.Generator]  #: of a point, from a seed and its number
 
     @property
     def numbers(self) -> tuple[int, ...]:
@@ -63,16 +64,28 @@ class LearntRatio:
         """Ratios at a point."""
         ratios = self.before.beside_water(point, seed) if self.before else OF_POLYSILICON
         low, high = map(math.log, self.range)
-        drawn = math.exp(stream(seed, "estimate", self.folder, point.number).uniform(low, high))
+        drawn = math.exp(self.random(seed, point.number).uniform(low, high))
         return replace(ratios, **{self.name: round(drawn, 4)})
 
 
 #: From silica through water to gold on sides of which water has a contact angle of 70°.
-THROUGH_WATER = LearntRatio("through_water", (0.04, 8.0), "attraction", None, 32, 28)
+THROUGH_WATER = LearntRatio(
+    "through_water", (0.04, 8.0), "attraction", None, 32, 28, lambda seed, k: stream(seed, "estimate", "attraction", k)
+)
 #: Solids of the combining relation have 1.4 to 2.7: polysilicon has less, contact angles and unlike sides add.
-THROUGH_AIR = LearntRatio("through_air", (0.5, 4.0), "attraction_through_air", THROUGH_WATER, 24, 16)
+THROUGH_AIR = LearntRatio(
+    "through_air",
+    (0.5, 4.0),
+    "attraction_through_air",
+    THROUGH_WATER,
+    24,
+    16,
+    lambda seed, k: stream(seed, "estimate", "attraction_through_air", k),
+)
 #: From 60 GPa to 400 GPa on sides of which water has a contact angle of 80°. ASSUME: alike at any attraction.
-STIFFNESS = LearntRatio("stiffness", (0.3, 12.0), "stiffness", None, 80, 40)
+STIFFNESS = LearntRatio(
+    "stiffness", (0.3, 12.0), "stiffness", None, 80, 40, lambda seed, k: stream(seed, "estimate", "stiffness", k)
+)
 #: All, in the order of `stiction.estimate.table.CHANGES`.
 ALL = (THROUGH_WATER, THROUGH_AIR, STIFFNESS)
 
