@@ -19,7 +19,7 @@
 #                   runs/supplement/
 #   make validation     every experiment of validation/ beside its prediction (8 minutes on two cores), in runs/validation/
 #   make pressing       how much more a pair sticks after its surfaces were pressed (2 minutes on two cores)
-#   make surrogate  learn the estimate at once from drawn surfaces (two and a half hours of a core), in runs/surrogate/
+#   make surrogate  learn the estimate at once from drawn surfaces (three hours of a core), in runs/surrogate/
 #   make figures    redraw the figures                       (takes CONFIG=... too)
 #   make report     results/report.html                      (takes CONFIG=... too)
 #
