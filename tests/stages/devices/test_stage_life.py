@@ -1,6 +1,7 @@
 """The life of devices: each answer is that of its form, in the right units, and the parts agree with each other."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pandas as pd
@@ -28,7 +29,7 @@ from stiction.report.devices import life as report
 from stiction.report.devices.pages import Page, Section, with_life
 from stiction.report.format import safe_size
 from stiction.report.page import Summary
-from stiction.report.style import save
+from stiction.report.style import on_a_page, save, strips
 from stiction.run import storage
 from stiction.stages.answer.beside import unasked
 from stiction.stages.life.answers import QUESTIONS, Name, answers_of, layout
@@ -465,6 +466,23 @@ def test_the_figure_has_a_row_for_every_length_between_its_label_and_its_number(
         assert panel.bbox.x1 <= min(box.x0 for box in boxes), "beside the panel"
         assert figure.bbox.x1 >= max(box.x1 for box in boxes)
     assert not covering(figure)
+
+
+@pytest.mark.parametrize("height", [1.8, 9.0])
+def test_the_rows_on_a_page_are_apart_also_where_their_height_is_underestimated(found, monkeypatch, height):
+    """A page breaks labels into many lines, and its legend has an entry a line."""
+
+    def closest():
+        with on_a_page():
+            figure = report.figure({"C1": found["C1"]}, {"C1": None})
+        strips(figure)  # lays it out
+        labels = [label.get_window_extent() for label in figure.axes[0].get_yticklabels()]
+        return min((upper.y0 - lower.y1) / figure.dpi for upper, lower in pairwise(labels))
+
+    monkeypatch.setattr(report.dots, "height", lambda labels: height)
+    assert closest() > 0.03
+    monkeypatch.setattr(report.dots, "heighten", lambda figure, panels: None)
+    assert (closest() < 0) == (height < 2), "a control: they are not by themselves"
 
 
 @pytest.mark.parametrize("factor", [0.99, 1.01])
