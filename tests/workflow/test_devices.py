@@ -12,6 +12,7 @@ import xarray as xr
 import yaml
 from browser import Browser, missing, says_fraction
 from conftest import ROOT, snakemake
+from packed import unpacked
 from test_report import STYLE, faults
 
 import stiction
@@ -227,7 +228,8 @@ def grid_of(run, device):
         GridAxis(**one | {"values": tuple(one["values"])})
         for one in (*content["axes"], content["share"], content["size"])
     ]
-    arrays = {name: np.array(content[name], float) for name in ("safe", "levels", "scores", "first")}
+    arrays = {name: np.array(content[name], float) for name in ("safe", "scores", "first")}
+    arrays |= {"levels": unpacked(content["levels"])}
     numbers = {name: content[name] for name in ("samples", "falls")}
     return Grid(tuple(axes[:-2]), axes[-2], axes[-1], **arrays, **numbers)
 

@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 from hostile import HOSTILE, Reading
 from numpy.testing import assert_allclose
+from packed import unpacked
 from scipy.interpolate import PchipInterpolator
 from scipy.special import ndtr
 
 from stiction.devices.risk import SCORES
-from stiction.report.devices.grid import Grid, GridAxis, StuckShares, monotone
+from stiction.report.devices.grid import Grid, GridAxis, StuckShares, monotone, packed
 from stiction.report.devices.levels import counted
 from stiction.report.page import Page
 
@@ -120,6 +121,23 @@ def test_a_fraction_grows_with_the_size_also_where_its_levels_do_not(falls):
     found = np.array([[one.low, one.share, one.high] for one in (ragged.stuck(STATE | {"length": x}) for x in lengths)])
     assert (np.diff(found, axis=0) >= 0).all()
     assert (np.diff(found, axis=1) >= 0).all(), "in its band"
+
+
+@pytest.mark.parametrize("shape", [(3, 2, 5), (3, 7)])
+@pytest.mark.parametrize("decades", [0.1, 7])
+def test_packed_sizes_are_the_same_to_a_millionth_and_shorter_than_their_digits(shape, decades):
+    sizes = 10 ** RNG.uniform(-decades / 2, decades / 2, shape)
+    sizes[0, 0], sizes[2, ..., -1] = np.nan, np.nan
+    content = packed(sizes)
+    assert_allclose(unpacked(content), sizes, rtol=1e-6 * decades / 7)
+    assert len(content["content"]) == 4 * sizes.size
+    assert json.loads(json.dumps(content)) == content
+
+
+@pytest.mark.parametrize("sizes", [np.full((2, 3), np.nan), np.array([[5.0, np.nan]]), np.array([[0.0, 2.0, np.inf]])])
+def test_packed_sizes_can_be_unknown_or_all_the_same(sizes):
+    known = np.where(np.isfinite(sizes) & (sizes > 0), sizes, np.nan)
+    assert_allclose(unpacked(packed(sizes)), known, rtol=1e-12)
 
 
 def test_no_text_of_a_grid_leaves_its_script():

@@ -4,6 +4,7 @@ A page has the grid as JSON, and ``templates/explorer.js`` repeats the formulas 
 are interpolated by monotone cubics, axis by axis. Nothing is extrapolated.
 """
 
+import base64
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from functools import cached_property
@@ -18,6 +19,8 @@ from stiction.report.devices.levels import SHOWN
 
 #: Significant digits of the numbers in a page, and an error too small to show, which has a logarithm.
 _DIGITS, _EXACT = 7, 1e-9
+#: Code of an unknown size.
+_UNKNOWN_CODE = (1 << 24) - 1
 #: Relative difference of sizes that rounding makes.
 _SAME = 2e-6
 #: Fractions of layers where they have no levels: nothing is known, or no more than that a fraction is from 0 to 1.
@@ -160,8 +163,9 @@ class Grid:
     @property
     def json(self) -> dict:
         """Content for a page."""
-        names = ["safe", "levels", "noise", "scores", *(["first"] if self.first is not None else [])]
-        return asdict(self) | {name: nested_lists(getattr(self, name)) for name in names}
+        names = ["safe", "noise", "scores", *(["first"] if self.first is not None else [])]
+        lists = {name: nested_lists(getattr(self, name)) for name in names}
+        return asdict(self) | lists | {"levels": packed(self.levels)}
 
 
 def monotone(coordinates: Sequence[float], values: np.ndarray, at: float) -> np.ndarray:
@@ -179,6 +183,22 @@ def hermite(width: float, fraction: float, values: Sequence, slopes: Sequence) -
     t, s = fraction, 1 - fraction
     ends = values[0] * (1 + 2 * t) * s**2 + values[1] * t**2 * (3 - 2 * t)
     return ends + width * (slopes[0] * t * s**2 - slopes[1] * t**2 * s)
+
+
+def packed(sizes: np.ndarray) -> dict:
+    """Content of a page for many sizes (...), in half the characters that their digits take.
+
+    Logarithms are in steps from the lowest one, in 24 bits each, big-endian, Base64. The largest number is an unknown
+    size. A step is below 1e-6 for sizes over seven decades.
+    """
+    is_known = np.isfinite(sizes) & (sizes > 0)
+    logarithms = np.log(sizes[is_known])
+    low, high = (float(logarithms.min()), float(logarithms.max())) if is_known.any() else (0.0, 0.0)
+    step = (high - low) / (_UNKNOWN_CODE - 1) or 1.0
+    codes = np.full(sizes.shape, _UNKNOWN_CODE, ">u4")
+    codes[is_known] = np.rint((logarithms - low) / step)
+    content = codes.ravel().view(np.uint8).reshape(-1, 4)[:, 1:].tobytes()
+    return {"low": low, "step": step, "shape": list(sizes.shape), "content": base64.b64encode(content).decode()}
 
 
 def nested_lists(values: np.ndarray) -> list:

@@ -96,13 +96,25 @@ function opened(number) {
 
   const noiseAt = state => Math.exp(monotone(known.get("share"), at(grid.noise, state, grid.axes.slice(1)), score(state.share)));
 
+  /** Nested sizes of a packed array, null for those that are unknown. */
+  function unpacked({low, step, shape, content}) {
+    const bytes = atob(content), part = k => bytes.charCodeAt(k);
+    let read = 0;
+    const size = () => {
+      const code = 65536 * part(read++) + 256 * part(read++) + part(read++);
+      return code === 16777215 ? null : Math.exp(low + step * code);
+    };
+    const nested = ([count, ...others]) => Array.from({length: count}, () => others.length ? nested(others) : size());
+    return nested(shape);
+  }
+
   /** Layers of P(stuck) and the ends of its band at a state: sizes as v, and their scores. */
-  const sign = grid.falls ? -1 : 1;
+  const sign = grid.falls ? -1 : 1, levels = grid.levels && unpacked(grid.levels);
   function levelsOf(state) {
-    const layers = grid.levels.map((layer, n) => {
+    const layers = levels.map((layer, n) => {
       const found = at(layer, state).map(value => sign * value), keep = found.map(Number.isFinite);
-      const [levels, scores] = [found, grid.scores].map(part => part.filter((_, k) => keep[k]));
-      const rising = n === 1 ? levels.map((_, k) => Math.max(...levels.slice(0, k + 1))) : levels.map((_, k) => Math.min(...levels.slice(k)));
+      const [known, scores] = [found, grid.scores].map(part => part.filter((_, k) => keep[k]));
+      const rising = n === 1 ? known.map((_, k) => Math.max(...known.slice(0, k + 1))) : known.map((_, k) => Math.min(...known.slice(k)));
       return [rising, scores];
     });
     return {layers, first: grid.first ? sign * at(grid.first, state)[0] : NaN};
