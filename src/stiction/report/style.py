@@ -53,7 +53,7 @@ _PAGE_WIDTH = ContextVar("width of a page", default=0.0)
 _AROUND = 0.04
 #: Levels of red, green and blue of rare colours in a picture of a page, which err by half of their step; part of the
 #: pixels that a common colour has.
-_LEVELS, _COMMON = 16, 1e-3
+_LEVELS, _COMMON = 8, 1e-3
 #: Points of an inch; height of the labels below a panel, in points.
 _POINTS, _LABELLED = 72, 24
 #: Mean width of a character and of a handle with its space, in units of the size of the text of a legend.
@@ -453,7 +453,7 @@ def strips(figure: Figure) -> list[Picture]:
 def picture(pixels: np.ndarray) -> bytes:
     """Content of a file of pixels (rows, columns, 3), as lossless WebP: a quarter smaller than PNG.
 
-    Colours of areas and lines stay. Those of few pixels, at edges and in letters, have 16 levels of each part.
+    Colours of areas and lines stay. Those of few pixels, at edges and in letters, have 8 levels of each part.
     """
     codes, places, counts = np.unique(pixels @ np.array([1 << 16, 1 << 8, 1]), return_inverse=True, return_counts=True)
     colours, step = np.stack([codes >> 16, codes >> 8 & 255, codes & 255], axis=1), 255 / (_LEVELS - 1)
