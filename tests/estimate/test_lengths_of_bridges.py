@@ -20,8 +20,9 @@ from stiction.devices import bridges as of_devices
 from stiction.estimate import bridge
 from stiction.estimate.answer import answer
 from stiction.estimate.bridge import COORDINATES, Bridge, MiddleState, Stretched
-from stiction.estimate.learning import bridge_rows, bridges
+from stiction.estimate.learning import bridge_rows, bridges, patches
 from stiction.estimate.learning import errors as of_estimates
+from stiction.estimate.learning.files import save
 from stiction.estimate.learning.training import SETS
 from stiction.estimate.length import Lengths, NotLearnt
 from stiction.estimate.question import questions
@@ -287,14 +288,14 @@ class Strips:
 
 @pytest.mark.parametrize("ratio", [0.8, math.nan])
 def test_numbers_of_a_point_have_full_contact_where_the_set_has_it(monkeypatch, tmp_path, ratio):
-    (tmp_path / "learn_any").mkdir()
-    np.savez(tmp_path / "learn_any" / "0002.npz", ratio=0.9, power=1.0)
+    monkeypatch.chdir(tmp_path)
+    save(Path(patches.FOLDER) / "learn_any", 2, {"ratio": 0.9, "power": 1.0})
     monkeypatch.setattr(bridges, "plan_of", lambda *_: None)
     monkeypatch.setattr(bridges.TrainingStrips, "of", lambda *_: Strips())
     energy = SimpleNamespace(ratio=ratio, error=0.05, power=1.1)
     monkeypatch.setattr(bridges, "ratio_of_energies", lambda *_: energy)
     of = SETS["learn_any"]
-    with_it, without = (bridges.computed(replace(POINT, number=number), "learn_any", {}, tmp_path) for number in (2, 3))
+    with_it, without = (bridges.computed(replace(POINT, number=number), "learn_any", {}) for number in (2, 3))
     for each in (with_it, without):
         assert each["lengths"].shape == (of.states, of.patches)
         np.testing.assert_allclose(each["lengths"][:, 0], each["airs"][:, 0] + each["sizes"][:, 0], rtol=1e-6)

@@ -13,10 +13,10 @@ from stiction.devices.risk import CONFIDENCE
 from stiction.estimate.answer import CONFIDENCES, TO_USE, difficulty
 from stiction.estimate.bridge import lengths as lengths_of_bridges
 from stiction.estimate.force import reciprocals
+from stiction.estimate.learning import patches, training
 from stiction.estimate.learning.bridge_rows import TAIL, of_middle, with_changes
 from stiction.estimate.learning.bridge_rows import states_of as states_of_bridges
 from stiction.estimate.learning.design import Point
-from stiction.estimate.learning.patches import FOLDER
 from stiction.estimate.learning.rows import change_of, of_forces, of_tips, patches_of, states_of, stored
 from stiction.estimate.learning.training import FACTORS, changes_of
 from stiction.estimate.length import NAMES, Lengths, NotLearnt, lengths
@@ -58,7 +58,7 @@ Processes = Callable[[Point], tuple[Surrogate, Surrogate]]
 
 def tested(folder: Path, sets: str, modulus: float, score: float, processes: Processes) -> Iterator[Tested]:
     """Lengths of some sets at a normal score up to -2, in the first air, by the full contact that settles."""
-    for point, numbers in stored(folder, sets):
+    for point, numbers in stored(folder / training.FOLDER, sets):
         if "changed" not in numbers or not np.isfinite(numbers["changed"]).all():
             continue
         state = states_of(point, numbers["airs"][:1], modulus)[0][FACTORS.index(1.0)]
@@ -68,7 +68,7 @@ def tested(folder: Path, sets: str, modulus: float, score: float, processes: Pro
 
 def tested_forces(folder: Path, sets: str, modulus: float, score: float, processes: Processes) -> Iterator[Tested]:
     """Reciprocals of forces of some sets, as `tested`."""
-    for point, numbers in stored(folder / FOLDER, sets):
+    for point, numbers in stored(folder / patches.FOLDER, sets):
         if not np.isfinite(numbers.get("ratio", np.nan)):
             continue
         patch, pressures = patches_of(point, numbers, modulus)[0], numbers["forces"][0].astype(float)
@@ -163,7 +163,7 @@ def noise_of(folder: Path, sets: str, score: float) -> np.ndarray:
     Of all points of some sets whose full contact settles. By the bootstrap: B. Efron, Ann. Stat. 7, 1 (1979).
     """
     errors, rng = [], stream(0, "estimate", "bootstrap")
-    for _, numbers in stored(folder, sets):
+    for _, numbers in stored(folder / training.FOLDER, sets):
         if "changed" in numbers and np.isfinite(numbers["changed"]).all():
             errors.append((_noise_of_strips(numbers, score, rng), _noise_of_tips(numbers["changed"], score, rng)))
     return np.array(errors)

@@ -1,15 +1,11 @@
 """Contacts of other solids at other temperatures, by which the estimate is tested: none of them is learnt.
 
 As `stiction.estimate.learning.training` and `stiction.estimate.learning.patches`, with other moduli, Hamaker constants
-and contact angles on both sides:
-
-    python -m stiction.estimate.learning.other_solids.points FOLDER [SET [FIRST LAST]]
+and contact angles on both sides.
 """
 
 import math
-import sys
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -24,7 +20,6 @@ from stiction.estimate.learning.training import (
     TrainingTips,
     changes_of,
     full_contact_of,
-    main,
     of_beam,
     water_of,
     with_materials,
@@ -103,9 +98,3 @@ def computed_patches(point: Point, name: str, valid: dict[str, Any]) -> dict[str
     forces = patches.forces_in(point, plan, [humidity], effort.patches, effort.seed)
     results = {"humidity": np.array(humidity), "sides": np.array(sides), "forces": forces.astype(np.float32)}
     return results | patches.change_in(point, plan, humidity, effort.seed)
-
-
-if __name__ == "__main__":
-    trained = Path(sys.argv[1]) / FOLDER
-    main(training.base(), computed, trained, SETS, *sys.argv[2:])
-    main(patches.base(), computed_patches, trained / patches.FOLDER, OF_PATCHES, *sys.argv[2:])
