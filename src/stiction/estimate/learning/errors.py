@@ -21,6 +21,7 @@ from stiction.estimate.learning.rows import change_of, of_forces, of_tips, patch
 from stiction.estimate.learning.training import FACTORS, changes_of
 from stiction.estimate.length import NAMES, Lengths, NotLearnt, lengths
 from stiction.estimate.promise import kept
+from stiction.estimate.state import PatchState, TipState
 from stiction.estimate.table import Surrogate
 from stiction.streams import stream
 
@@ -56,24 +57,32 @@ class Tested:
 Processes = Callable[[Point], tuple[Surrogate, Surrogate]]
 
 
+def settled_tips(folder: Path, sets: str, modulus: float) -> Iterator[tuple[Point, TipState, Lengths]]:
+    """Tips of some sets in their first air, with their lengths over the gap by the full contact that settles."""
+    for point, numbers in stored(folder / training.FOLDER, sets):
+        if "changed" in numbers and np.isfinite(numbers["changed"]).all():
+            state = states_of(point, numbers["airs"][:1], modulus)[0][FACTORS.index(1.0)]
+            yield point, state, lengths_of(of_tips(numbers["changed"]), math.log(1.5))
+
+
+def settled_patches(folder: Path, sets: str, modulus: float) -> Iterator[tuple[Point, PatchState, Lengths]]:
+    """Patches of some sets in their first air, with the reciprocals of their forces [N⁻¹], as `settled_tips`."""
+    for point, numbers in stored(folder / patches.FOLDER, sets):
+        if np.isfinite(numbers.get("ratio", np.nan)):
+            patch, pressures = patches_of(point, numbers, modulus)[0], numbers["forces"][0].astype(float)
+            changed = change_of(numbers).of(pressures)(pressures)
+            yield point, patch, lengths_of(of_forces(changed, patch), -math.log(patch.flooded_force))
+
+
 def tested(folder: Path, sets: str, modulus: float, score: float, processes: Processes) -> Iterator[Tested]:
     """Lengths of some sets at a normal score up to -2, in the first air, by the full contact that settles."""
-    for point, numbers in stored(folder / training.FOLDER, sets):
-        if "changed" not in numbers or not np.isfinite(numbers["changed"]).all():
-            continue
-        state = states_of(point, numbers["airs"][:1], modulus)[0][FACTORS.index(1.0)]
-        true = lengths_of(of_tips(numbers["changed"]), math.log(1.5))
+    for point, state, true in settled_tips(folder, sets, modulus):
         yield beside(point, true, score, lambda state=state, at=point: lengths(state, 1.0, *processes(at)))
 
 
 def tested_forces(folder: Path, sets: str, modulus: float, score: float, processes: Processes) -> Iterator[Tested]:
     """Reciprocals of forces of some sets, as `tested`."""
-    for point, numbers in stored(folder / patches.FOLDER, sets):
-        if not np.isfinite(numbers.get("ratio", np.nan)):
-            continue
-        patch, pressures = patches_of(point, numbers, modulus)[0], numbers["forces"][0].astype(float)
-        changed = change_of(numbers).of(pressures)(pressures)
-        true = lengths_of(of_forces(changed, patch), -math.log(patch.flooded_force))
+    for point, patch, true in settled_patches(folder, sets, modulus):
         yield beside(point, true, score, lambda patch=patch, at=point: reciprocals(patch, *processes(at)))
 
 

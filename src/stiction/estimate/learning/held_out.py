@@ -17,7 +17,7 @@ from stiction.config.reading import read
 from stiction.config.units import from_si
 from stiction.contact.air import Air
 from stiction.estimate.answer import CHOSEN, CONFIDENCES, MARGINS, OF_OTHER_SOLIDS, TO_USE, answer, difficulty
-from stiction.estimate.learning import dry_bridges, dry_rows
+from stiction.estimate.learning import by_rms, dry_bridges, dry_rows
 from stiction.estimate.learning.design import SurfaceLaw
 from stiction.estimate.learning.dry import CONSTANTS, DryEffort
 from stiction.estimate.learning.errors import (
@@ -91,6 +91,12 @@ _BRIDGES_IN_DRY_AIR = (
     "Lengths of bridges in dry air, by the closed form with the pull-off pressure of the estimate of stoppers. A "
     "factor is learnt from {} points, without bridges that come free of two cracks:"
 )
+_OF_RMS = (
+    "Cantilevers and stoppers in humid air once more, with only the rms of both sides stated. The estimate takes "
+    "the rest from the typical surfaces, and errors are beside their mean. The end to use makes the same promise:"
+)
+#: Devices of whose surfaces the rms alone is stated, by their kind in words.
+_BY_RMS = (("length", by_rms.lengths), ("force", by_rms.forces))
 _FORCES_IN_DRY_AIR = "Forces in dry air, beside patches changed by {} strips of 3 µm in full contact:"
 
 
@@ -103,6 +109,7 @@ def lines(folder: Path) -> Iterator[str]:
     yield from (_OTHER_BRIDGES, "")
     yield from _beyond([row for _, rows in tables for row in rows if row.is_checked])
     yield from _of_noise(folder, table["tested_score"])
+    yield from _of_rms(folder)
 
 
 def _of_polysilicon(folder, table):
@@ -167,6 +174,27 @@ def _beyond(rows):
             f"{100 * beyond.mean():.1f} %, where the promise allows {100 - kept(CONFIDENCES[0]):g} %."
         )
         yield ""
+
+
+def _of_rms(folder):
+    """Lines of the table of devices of whose surfaces the rms alone is stated."""
+    found = {
+        (kind, name): list(devices(folder, name)) for kind, devices in _BY_RMS for name in SETS if _is_checked(name)
+    }
+    if any(found.values()):
+        yield from (_OF_RMS, "", f"| size {_HEAD.rpartition('| inside')[0]}|", f"|---{_RULE.removesuffix('---|')}")
+        yield from (_line_by_rms(kind, SETS[name], devices) for (kind, name), devices in found.items() if devices)
+        yield ""
+
+
+def _line_by_rms(kind, words, devices):
+    """Row of the table of a kind of devices on some surfaces."""
+    answered = [device for device in devices if device.estimate]
+    errors = np.array([device.error for device in answered])
+    numbers = np.mean(errors), np.sqrt(np.mean(errors**2)), np.median([device.half for device in answered])
+    cells = [kind, words, len(devices), len(devices) - len(answered), *(f"{100 * number:.1f}" for number in numbers)]
+    cells += [_counted(np.array([getattr(each, key) for each in answered])) for key in ("is_beyond", "is_inside")]
+    return f"| {' | '.join(map(str, cells))} |"
 
 
 def _of_noise(folder, score):
