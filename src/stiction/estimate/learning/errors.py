@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,6 +13,7 @@ from scipy.special import betaincinv
 from stiction.devices.risk import CONFIDENCE
 from stiction.estimate.answer import CONFIDENCES, TO_USE, difficulty
 from stiction.estimate.bridge import lengths as lengths_of_bridges
+from stiction.estimate.bridge import over_flooded
 from stiction.estimate.force import reciprocals
 from stiction.estimate.learning import patches, training
 from stiction.estimate.learning.bridge_rows import TAIL, of_middle, with_changes
@@ -92,6 +94,16 @@ def tested_bridges(folder: Path, sets: str, modulus: float, score: float, proces
         state, *_ = states_of_bridges(point, numbers, modulus)
         true = lengths_of(of_middle(state, numbers["changed"]), math.log(state.flooded_length))
         yield beside(point, true, score, lambda state=state, at=point: lengths_of_bridges(state, *processes(at)))
+
+
+def longest_tested(folder: Path, sets: str, modulus: float, *processes: Surrogate) -> float:
+    """Largest of `stiction.estimate.bridge.over_flooded` of the bridges of some sets that are tested."""
+    ratios = []
+    for point, numbers in with_changes(folder, sets, TAIL):
+        state, *_ = states_of_bridges(point, numbers, modulus)
+        with suppress(NotLearnt):
+            ratios.append(over_flooded(state, lengths_of_bridges(state, *processes)))
+    return max(ratios)
 
 
 def beside(point: Point, true: Lengths, score: float, estimate: Callable[[], Lengths]) -> Tested:

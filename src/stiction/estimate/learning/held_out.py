@@ -228,7 +228,7 @@ def of_runs(lengths: str, forces: str, devices: str) -> Iterator[str]:
     yield "|---|---|---|---|---|---|"
     rows = list(_rows(lengths, forces, asked))
     yield from (row.line for row in rows)
-    chosen = [row for row in rows if row.share == CHOSEN]
+    chosen = [row for row in rows if row.share == CHOSEN and row.is_known]
     inside, beyond = (sum(each) for each in zip(*((row.is_inside, row.is_beyond) for row in chosen), strict=True))
     yield ""
     yield (
@@ -243,8 +243,9 @@ class RowBesideRun(NamedTuple):
 
     line: str
     share: float
-    is_inside: bool  #: whether the size of the run is in the interval of 90 %
-    is_beyond: bool  #: whether it is beyond the end to use
+    is_known: bool = False  #: whether the estimate does not refuse
+    is_inside: bool = False  #: whether the size of the run is in the interval of 90 %
+    is_beyond: bool = False  #: whether it is beyond the end to use
 
 
 def _rows(lengths, forces, asked):
@@ -274,16 +275,18 @@ def _read(path):
 def _beside(row, share, of_run, question):
     """Row of one length or force of a run, in the unit of the question."""
     humidity = float(row["relative_humidity"])
-    once = replace(question, touchdowns=1, humidities=(humidity,))
-    estimate = answer(once, *known())
+    once, cells = replace(question, touchdowns=1, humidities=(humidity,)), [row["device"], Air(humidity).name]
+    cells += [f"{1 / share:.0f}", f"{_three_digits(of_run)} {_WORDS[question.unit]}"]
+    try:
+        estimate = answer(once, *known())
+    except NotLearnt:
+        return RowBesideRun(f"| {' | '.join([*cells, 'refused', ''])} |", share)
     estimated = next(each for each in estimate.rows if np.isclose(each.fraction, share))
     low, high = (from_si(end, question.unit) for end in estimated.intervals["90"])
     size = _three_digits(from_si(estimated.size, question.unit))
-    cells = [row["device"], f"{Air(humidity).name}", f"{1 / share:.0f}"]
-    cells += [f"{_three_digits(of_run)} {_WORDS[question.unit]}", size]
     ends = f"{bounding(low, 3, up=False)} to {bounding(high, 3, up=True)}"
     is_beyond = of_run > high if estimate.is_force else of_run < low
-    return RowBesideRun(f"| {' | '.join([*cells, ends])} |", share, low <= of_run <= high, is_beyond)
+    return RowBesideRun(f"| {' | '.join([*cells, size, ends])} |", share, True, low <= of_run <= high, is_beyond)
 
 
 def _three_digits(number):

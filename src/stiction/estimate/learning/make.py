@@ -22,7 +22,16 @@ from stiction.estimate.learning.bridges import EVERY
 from stiction.estimate.learning.bridges import RANGES as RANGES_OF_BRIDGES
 from stiction.estimate.learning.design import SIDES as SIDES_OF_PATCHES
 from stiction.estimate.learning.design import SurfaceLaw
-from stiction.estimate.learning.errors import Tested, margins_of, rest_of, scores, tested, tested_bridges, tested_forces
+from stiction.estimate.learning.errors import (
+    Tested,
+    longest_tested,
+    margins_of,
+    rest_of,
+    scores,
+    tested,
+    tested_bridges,
+    tested_forces,
+)
 from stiction.estimate.learning.fit import Fitted, everywhere, fitted, group, rounded
 from stiction.estimate.learning.other_solids import rows as of_solids
 from stiction.estimate.learning.other_solids.ratios import ALL
@@ -139,6 +148,7 @@ def bridges_of(folder: Path, modulus: float) -> dict[str, Any]:
         "coordinates": OF_BRIDGES,
         "middle": middle.content,
         "full": full.content,
+        "longest": longest_tested(folder, "decide", modulus, *(Surrogate(**each.content) for each in (middle, full))),
     }
     section |= changes_of(of_solids.rows_of_bridges, folder, modulus)
     return section | errors_of(tested_bridges, folder, modulus, middle, full)

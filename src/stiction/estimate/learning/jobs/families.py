@@ -72,7 +72,7 @@ _ALL = (
     Family(dry_bridges.FOLDER, dry_bridges.SETS, _IN_DRY_AIR, dry_bridges.computed),
     *(family for ratio in ratios.ALL for family in _of_ratio(ratio)),
     Family(points.FOLDER, points.SETS, training.base, points.computed),
-    Family(f"{points.FOLDER}/{patches.FOLDER}", points.OF_PATCHES, patches.base, points.computed_patches),
+    Family(f"{points.FOLDER}/{patches.FOLDER}", points.SETS, patches.base, points.computed_patches),
 )
 #: Families by folder.
 FAMILIES = {family.folder: family for family in _ALL}

@@ -5,7 +5,6 @@ and contact angles on both sides.
 """
 
 import math
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -36,13 +35,11 @@ TEMPERATURES = (275.0, 370.0)
 RANGES = {"modulus": (60.0, 400.0), "poisson_ratio": (0.15, 0.35), "hamaker": (4.6, 250.0), "angle": (0.0, 80.0)}
 #: Sets of points by name. Their seeds are in no other set.
 SETS = {
-    "decide_typical": TrainingEffort(16, 21, SurfaceLaw.TYPICAL, 40, to_si(1600, "um"), 1, 1, 400),
-    "decide_any": TrainingEffort(16, 22, SurfaceLaw.ANY, 40, to_si(1600, "um"), 1, 1, 400),
+    "decide_typical": TrainingEffort(40, 21, SurfaceLaw.TYPICAL, 40, to_si(1600, "um"), 1, 1, 400),
+    "decide_any": TrainingEffort(40, 22, SurfaceLaw.ANY, 40, to_si(1600, "um"), 1, 1, 400),
     "check_typical": TrainingEffort(16, 23, SurfaceLaw.TYPICAL, 40, to_si(1600, "um"), 1, 1, 400),
     "check_any": TrainingEffort(16, 24, SurfaceLaw.ANY, 40, to_si(1600, "um"), 1, 1, 400),
 }
-#: The same of patches, which the first of these points have.
-OF_PATCHES = {name: replace(effort, points=12 if name.startswith("decide") else 8) for name, effort in SETS.items()}
 
 
 def drawn(point: Point, seed: int) -> tuple[float, list[dict[str, Any]]]:
