@@ -100,7 +100,7 @@ def test_stricter_sizes_are_marked_at_the_allowed_fraction_and_stated_in_the_tit
     assert panel.get_title(loc="left").splitlines() == [
         "C1, cantilever",
         "stricter: 138 µm between these airs",
-        "(interpolated: state RH\N{NO-BREAK SPACE}0.8)",
+        "(interpolated at RH\N{NO-BREAK SPACE}0.8: add this air)",
         "stricter: 90 µm if water dries on it",
     ]
     (without,) = risk({"C1": answered(between=Between(0.8, 140.4e-6, 140e-6))}).axes  # reads as the size to build

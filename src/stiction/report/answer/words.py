@@ -171,7 +171,8 @@ def stricter(answer: Answer) -> list[str]:
     """Stricter sizes of airs between the stated ones, which are interpolated, and of what nothing stated asks for."""
     at, between = answer.between, []
     if at and answer.sought.is_stricter(at.size, answer.build):
-        between = [f"{safe_size(at.size, answer.sought)} between these airs (interpolated: state RH {at.humidity:.2g})"]
+        size = safe_size(at.size, answer.sought)
+        between = [f"{size} between these airs (interpolated at RH {at.humidity:.2g}: add this air)"]
     return between + unasked(answer)
 
 
@@ -222,7 +223,7 @@ def decides(answer: Answer) -> str:
     stuck = "" if answer.sought.more_is_better else f", stuck by {'the ' if held != 'beam or tip' else ''}{held}"
     sentence = f"{_air(answer, last.humidity)}{_among_airs(answer)}{stuck}."
     if answer.between and answer.sought.is_stricter(answer.between.size, answer.build):
-        sentence += f" Between them, RH {answer.between.humidity:.2g} is worse."
+        sentence += f" Between these, RH {answer.between.humidity:.2g} is stricter (interpolated)."
     change = largest.factor - 1
     if not np.isfinite(change) or abs(change) < _SAME:
         return sentence
@@ -231,16 +232,13 @@ def decides(answer: Answer) -> str:
 
 
 def _among_airs(answer):
-    """How the air that decides in most draws compares with the other stated airs, each alone as the table has it."""
+    """How strict the air that decides is: another one can be stricter alone, but not in most draws of all of them."""
     if len(answer.airs) == 1:
         return ""
-    decides, sign = answer.stated_steps[-1].humidity, answer.sought.sign
-    build = next(air.build for air in answer.airs if air.humidity == decides)
-    stricter = [Air(air.humidity).words for air in answer.airs if sign * air.build < sign * build]
-    if not stricter:
-        return ", the worst of the stated airs"
-    alone = f"alone, {listed(stricter)} {'is' if len(stricter) == 1 else 'are'} stricter"
-    return f", in most draws of all stated airs together ({alone})"
+    sign = answer.sought.sign
+    build = next(air.build for air in answer.airs if air.humidity == answer.together.humidity)
+    often = any(sign * air.build < sign * build for air in answer.airs)
+    return f", {'most often ' * often}the strictest of the stated airs"
 
 
 def measure(answer: Answer) -> str:
@@ -271,17 +269,22 @@ def by_test_beams(answer: Answer) -> list[str]:
 
 
 def of_airs(answer: Answer) -> list[dict[str, str]]:
-    """Rows of the table of a first screen: size to build and P(stuck) in each stated air alone."""
-    rows, sought = [], answer.sought
+    """Rows of the table of a first screen: size to build and P(stuck) in each stated air alone.
+
+    The air that decides has those in all of them, as pictures and controls have: its own alone can be less safe.
+    """
+    rows, sought, together = [], answer.sought, answer.together
     after = f" after {grouped(answer.touchdowns)} touchdowns" * (answer.touchdowns > 1 and not answer.stays)
     for air in answer.airs:
-        row = {"RH": humidity_text(air.humidity)} | _celsius(answer, air)
+        decides = len(answer.airs) > 1 and air.humidity == together.humidity
+        shown = together if decides else air
+        row = {"RH": humidity_text(air.humidity) + " (decides)" * decides} | _celsius(answer, air)
         row |= {"touchdowns": f"{answer.touchdowns_in(air.humidity):.5g}"} if answer.stays else {}
-        row |= {f"{sought.name} to build [{sought.shown}]": _size(answer, air.build)}
+        row |= {f"{sought.name} to build [{sought.shown}]": _size(answer, shown.build)}
         if np.isfinite(air.without_tip):
             row["if the tip cannot touch [µm]"] = _size(answer, air.without_tip)
-        if air.stuck is not None:
-            row[f"P(stuck){after} at {answer.size / sought.scale:.4g} {sought.shown}"] = stuck_in_words(air.stuck)
+        if shown.stuck is not None:
+            row[f"P(stuck){after} at {answer.size / sought.scale:.4g} {sought.shown}"] = stuck_in_words(shown.stuck)
         rows.append(row)
     return rows
 
