@@ -207,10 +207,8 @@ def test_the_expectation_by_a_few_draws_of_which_all_stick_is_inside_the_band_or
     found, longer = (asked([one], heavy, size=size, number=20_000).stuck for size in (0.5, 0.75))
     assert found.none_seen
     assert found.high < SHARE < found.value
-    assert (
-        stuck_in_words(found)
-        == "at most 0.01 % (95 % confidence; many can in the other 5 % of all cases, 0.97 % on average)"
-    )
+    said = "at most 0.01 % (95 % confidence; 0.97 % on average, as many stick in the worst 5 %)"
+    assert stuck_in_words(found) == said
     assert not longer.none_seen
     assert longer.low <= longer.value <= longer.high
 

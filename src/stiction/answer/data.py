@@ -3,7 +3,7 @@
 Numbers, sides and causes are fields. Pages, tables and sentences are made from them (`stiction.report.answer`).
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
 import numpy as np
@@ -208,8 +208,12 @@ class Answer:
 
     @property
     def known_steps(self) -> tuple[Step, ...]:
-        """Steps after which the size is known."""
-        return tuple(step for step in self.steps if np.isfinite(step.size))
+        """Steps of known sizes: first those inside, to the size to build, then that size with each further cause.
+
+        ASSUME: a cause that is not stated changes the size to build as it changes the size before its step.
+        """
+        beside = (replace(step, size=self.build * step.factor) for step in self.steps if not step.stated)
+        return tuple(step for step in (*self.stated_steps, *beside) if np.isfinite(step.size))
 
     @property
     def stated_steps(self) -> tuple[Step, ...]:

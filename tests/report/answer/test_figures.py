@@ -151,10 +151,23 @@ def test_the_ladder_has_a_row_for_each_step_and_the_curve_beside_it():
     assert beside(steps) == [
         "estimate 160 µm",
         "error of the simulation 155 µm (−10.0 %)",
-        "uncertainty of the inputs 140 µm (−10.0 %)",
+        "uncertainty of the inputs: to build 140 µm (−10.0 %)",
     ]
     assert not steps.texts, "nothing lies on bars and lines"
     assert "all airs, mostly RH 0.92" in lines_of(stuck)
+
+
+def test_a_step_that_is_not_stated_begins_at_the_size_to_build():
+    whole = answered()
+    fast = Step(Cause.FAST, 150e-6, 0.8, 0.92, "S-shape", "fast_strips", stated=False)
+    steps = (*whole.steps[:2], fast, whole.steps[2])
+    panel = ladder(replace(whole, steps=steps)).axes[0]
+    assert beside(panel)[2:] == [
+        "uncertainty of the inputs: to build 140 µm (−10.0 %)",
+        "fast separation, as in a shock (not stated) 112 µm (−20.0 %)",
+    ]
+    bars = [line.get_xdata() for line in panel.lines if line.get_linewidth() == 5]
+    np.testing.assert_allclose(bars[2:], [[155, 140], [140, 112]])
 
 
 @pytest.mark.parametrize("known", [3, 1])

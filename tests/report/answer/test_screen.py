@@ -34,6 +34,7 @@ from stiction.beam.cantilever import Beam
 from stiction.beam.energy import apparent_adhesion_energy
 from stiction.devices.budget import LARGEST
 from stiction.devices.limits import rules as limits
+from stiction.devices.risk import one_in
 from stiction.report.answer import words
 from stiction.report.axes.section import with_process
 from stiction.report.format import safe_size
@@ -344,6 +345,13 @@ def test_one_air_has_one_size_and_that_of_the_air_that_decides_is_in_all_of_them
     assert other["force to build [µN]"] == safe_size(air.build, together.sought).split()[0]
     (single,) = words.of_airs(replace(answer, airs=(decides,)))
     assert single["RH"] == f"{decides.humidity:g}"
+
+
+@pytest.mark.parametrize(("touchdowns", "said"), [(1, "one touchdown"), (20_000, "20 000 touchdowns")])
+def test_a_size_to_build_says_for_how_many_touchdowns_it_is(touchdowns, said):
+    for answer in (beam_answer(CANTILEVER, {0.67: safe()}), stopper_answer(stopper_dataset())):
+        promised = words.promise(replace(answer, touchdowns=touchdowns))
+        assert promised.startswith(f"At most {one_in(answer.share)} sticks after {said} at ")
 
 
 @pytest.mark.parametrize(

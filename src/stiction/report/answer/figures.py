@@ -86,10 +86,10 @@ def _steps(panel: Axes, answer):
 
 
 def _label_of_row(answer, row):
-    """Cause of a row of the ladder with its size and change."""
+    """Words on a row of the ladder with its size and change."""
     step = answer.known_steps[row]
     change = with_minus(f" ({100 * (step.factor - 1):+.1f} %)") if row else ""
-    return f"{textwrap.fill(words.CAUSES[step.cause][0], _WIDE)}\n{safe_size(step.size, answer.sought)}{change}"
+    return f"{textwrap.fill(words.step_in_words(answer, step), _WIDE)}\n{safe_size(step.size, answer.sought)}{change}"
 
 
 def _stated(panel, answer, scale):

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from stiction.answer.data import INPUTS, Answer, Cause, Probability, Verdict
+from stiction.answer.data import INPUTS, Answer, Cause, Probability, Step, Verdict
 from stiction.answer.sought import FORCE, LENGTH, PULL_OFF
 from stiction.constants import ZERO_CELSIUS
 from stiction.contact.air import Air
@@ -104,6 +104,15 @@ def _digits(fraction, end):
     return 1 if end == "high" and _NEAR * power < fraction < power < 1 else 2
 
 
+def step_in_words(answer: Answer, step: Step) -> str:
+    """Cause of a step, as the row of a ladder. The size to build, and what is not inside it, are marked."""
+    cause = CAUSES[step.cause][0]
+    if not step.stated:
+        return f"{cause} (not stated)"
+    is_last = step is answer.stated_steps[-1] and not answer.forbidden and np.isfinite(answer.build)
+    return f"{cause}: to build" if is_last else cause
+
+
 def stuck_in_words(stuck: Probability) -> str:
     """P(stuck) with its band. Where no simulated device sticks, its upper end alone, or with a larger expectation.
 
@@ -112,12 +121,12 @@ def stuck_in_words(stuck: Probability) -> str:
     >>> stuck_in_words(Probability(0.18, 1e-9, 0.95)), stuck_in_words(Probability(1e-9, 0.0, 0.0037, none_seen=True))
     ('18 % (0 to 95 %)', 'at most 0.37 %')
     >>> stuck_in_words(Probability(0.002, 0.0, 0.001, none_seen=True))
-    'at most 0.1 % (95 % confidence; many can in the other 5 % of all cases, 0.2 % on average)'
+    'at most 0.1 % (95 % confidence; 0.2 % on average, as many stick in the worst 5 %)'
     """
     if stuck.none_seen:
         most, mean = percent(stuck.high, "high"), percent(stuck.value)
         more = (
-            f" (95 % confidence; many can in the other 5 % of all cases, {mean} on average)"
+            f" (95 % confidence; {mean} on average, as many stick in the worst 5 %)"
             if stuck.value > stuck.high and mean != most
             else ""
         )
@@ -190,14 +199,14 @@ def _unless(stricter_size):
 
 
 def promise(answer: Answer) -> str:
-    """What the size to build promises."""
+    """What the size to build promises, after how many touchdowns."""
     shared = ", shared among its conditions," * bool(answer.stays)
-    after = f" after {grouped(answer.touchdowns)} touchdowns{shared}" * (answer.touchdowns > 1)
+    after = f"{grouped(answer.touchdowns)} touchdowns{shared}" if answer.touchdowns > 1 else "one touchdown"
     where = airs([air.humidity for air in answer.airs])
-    sentence = f"At most {one_in(answer.share)} sticks{after} {where} (95 % confidence, if the model holds)."
+    sentence = f"At most {one_in(answer.share)} sticks after {after} {where} (95 % confidence, if the model holds)."
     if answer.stuck is None or not answer.is_enough or answer.stuck.value <= answer.share:
         return sentence
-    return f"{sentence} In the other 5 % of all cases many can stick, so that more are expected on average."
+    return f"{sentence} On average more stick, as many do in the worst 5 % of cases."
 
 
 def contains(answer: Answer) -> str:

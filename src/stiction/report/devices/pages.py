@@ -58,9 +58,10 @@ _OF_MAPS = (
 _MISSING_EFFECTS = "this input does not act here, or too few of the simulated devices stick to show what it changes"
 #: What a ladder shows.
 _LADDER = (
-    "Each step adds one cause to those above it, in the air and end state that are then worst. From the error of the "
-    "simulation on, sizes hold with 95 % confidence. What is not stated stands beside and changes nothing. Lines: the "
-    "size to build, and yours (dotted)."
+    "Each row counts one cause more than the row above it, in the air and end state that are then the strictest. Build "
+    "the size of the row marked so, which counts all that you stated, and none above it. A row that is not stated has "
+    "the size to build if this happened, too. All but the estimate have a confidence of 95 %. Lines: the size to "
+    "build, and yours (dotted)."
 )
 _NO_ERROR = "Not inside: the error of the model of the contact, which study full_contact computes."
 

@@ -184,7 +184,7 @@ function opened(number) {
 
   function stuckText({share, low, high, beyond}) {
     if (Number.isNaN(share)) return MISSING;
-    const [most, mean] = [percent(high, "high"), percent(share)], more = share > high && mean !== most ? ` (95 % confidence; many can in the other 5 % of all cases, ${mean} on average)` : "";
+    const [most, mean] = [percent(high, "high"), percent(share)], more = share > high && mean !== most ? ` (95 % confidence; ${mean} on average, as many stick in the worst 5 %)` : "";
     if (beyond < 0) return high > 0.999 ? "0 to 100 %" : `at most ${most}${more}`;
     if (low > 0.999) return percent(low);
     if (beyond) return `at least ${percent(low, "low")}`;
