@@ -235,6 +235,25 @@ class Answer:
         first = min((air.first for air in self.airs), key=lambda size: self.sought.sign * size, default=np.nan)
         return AnswerInAir(self.stated_steps[-1].humidity, self.build, np.nan, self.stuck, self.curve, first)
 
+    def at_most(self, air: AnswerInAir) -> tuple[np.ndarray, np.ndarray]:
+        """Sizes, and fractions that bound P(stuck) in an air with 95 % confidence, also at the size to build.
+
+        There the bound is the allowed fraction, and up to there no more: the size to build is a quantile of the draws,
+        and P(stuck) increases beyond it in each of them. Beyond it, the upper end of the band is a bound as well.
+
+        Returns
+        -------
+        sizes : array (n,) or (n + 1,)
+            Those of the curves, and the size to build if there is one [m, N].
+        fractions : array, the same shape
+        """
+        v, upper, build = self.sought.sign * np.log(self.sizes), air.curve[2], self.sought.sign * np.log(air.build)
+        if not np.isfinite(build):
+            return self.sizes, upper
+        k = int(np.searchsorted(v, build))
+        upper = np.where(v <= build, np.minimum(upper, self.share), upper)
+        return np.insert(self.sizes, k, air.build), np.insert(upper, k, self.share)
+
     @property
     def is_by_tip(self) -> bool:
         """Whether the tip holds devices in the air that decides: without it, they may be longer by over 1 %."""

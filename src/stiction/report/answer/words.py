@@ -181,7 +181,7 @@ def stricter(answer: Answer) -> list[str]:
     at, between = answer.between, []
     if at and answer.sought.is_stricter(at.size, answer.build):
         size = safe_size(at.size, answer.sought)
-        between = [f"{size} between these airs (interpolated at RH {at.humidity:.2g}: add this air)"]
+        between = [f"{size} between these airs (interpolated at RH {at.humidity:.2g}: compute it)"]
     return between + unasked(answer)
 
 

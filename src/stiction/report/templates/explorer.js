@@ -163,13 +163,13 @@ function opened(number) {
   }
   const grouped = number => /^\d{5,}$/.test(number) ? number.replace(/\B(?=(\d{3})+$)/g, " ") : number;
 
-  /** Text of a bound with some digits, never below it if up, else never above. Two more digits are those of the page. */
-  function bounding(value, digits, up) {
+  /** Text of a bound with some digits, never below it if up, else never above. The page knows two more digits, or `known` ones. */
+  function bounding(value, digits, up, known = digits + 2) {
     if (!Number.isFinite(value) || !value) return text(value);
-    const [mantissa, power] = value.toExponential(digits + 1).split("e"), steps = Number(`${mantissa}e${digits - 1}`);
+    const [mantissa, power] = value.toExponential(known - 1).split("e"), steps = Number(`${mantissa}e${digits - 1}`);
     return text(Number(`${up ? Math.ceil(steps) : Math.floor(steps)}e${Number(power) + 1 - digits}`), digits);
   }
-  const safeText = size => bounding(size, SAFE_DIGITS, grid.falls);
+  const safeText = size => bounding(size, SAFE_DIGITS, grid.falls, DIGITS + 2);
   const oneIn = share => `1 in ${grouped(text(1 / share))}`;
 
   /** Fraction in percent, or an end of a band, "low" or "high", rounded outwards, as in report/answer/words.py. */
