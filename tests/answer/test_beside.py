@@ -44,7 +44,9 @@ def test_the_headline_of_a_stopper_names_a_larger_force_between_its_airs_as_its_
     forces, airs = grid.safe[:, grid.share.values.index(answer.share)], np.array(grid.axes[0].values)
     inside = (airs > 0.44) & (airs < 0.67)
     assert 1e6 * answer.between.size == pytest.approx(forces[inside].max())
-    beside_it = f"{safe_size(answer.between.size, answer.sought)} between these airs (interpolated: state RH 0.55)"
+    beside_it = (
+        f"{safe_size(answer.between.size, answer.sought)} between these airs (interpolated at RH 0.55: compute it)"
+    )
     assert screen.headline(answer).startswith(
         f"At least {safe_size(answer.build, answer.sought)}, but {beside_it}; with your "
     )
@@ -113,7 +115,7 @@ def test_the_headline_of_a_beam_names_a_shorter_length_of_its_chart_between_its_
     lengths = {rh: safe(kind, longest=longest_of_air) for rh, longest_of_air in ((0.44, 6e-4), (0.67, 5e-4))}
     answer = beam_answer(section, lengths, charts={0.5: chart(kind, longest, thickness)})
     assert bool(answer.between) == is_named
-    assert (" µm between these airs (interpolated: state RH 0.5)" in screen.headline(answer)) == is_named
+    assert (" µm between these airs (interpolated at RH 0.5: compute it)" in screen.headline(answer)) == is_named
     if is_named:  # by factors of about one: all inputs count as exact
         limit = float(safe(kind, longest).isel(shape=-1).safe_length.sel(share=answer.share))
         assert answer.between.size == pytest.approx(limit, rel=1e-2)

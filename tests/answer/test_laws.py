@@ -207,12 +207,33 @@ def test_the_expectation_by_a_few_draws_of_which_all_stick_is_inside_the_band_or
     found, longer = (asked([one], heavy, size=size, number=20_000).stuck for size in (0.5, 0.75))
     assert found.none_seen
     assert found.high < SHARE < found.value
-    assert (
-        stuck_in_words(found)
-        == "at most 0.01 % (95 % confidence; many can in the other 5 % of all cases, 0.97 % on average)"
-    )
+    said = "at most 0.01 % (95 % confidence; 0.97 % on average, as many stick in the worst 5 %)"
+    assert stuck_in_words(found) == said
     assert not longer.none_seen
     assert longer.low <= longer.value <= longer.high
+
+
+@pytest.mark.parametrize("unit", ["m", "N"])
+@pytest.mark.parametrize("share", [SHARE, 0.01, 0.2])
+def test_a_fraction_that_no_more_than_5_percent_of_the_draws_exceed_meets_the_allowed_one_at_the_size_to_build(
+    share, unit
+):
+    airs, *_ = drawn(3)
+    conditions = [replace(one, sampled=replace(one.sampled, stated_sizes=())) for one in airs]
+    found = asked(conditions, budgets(airs, error=0.02), share=share, unit=unit)
+    sizes, fractions = found.at_most(found.together)
+    assert fractions[sizes == found.build].max() == share
+    assert np.diff(fractions).min() >= 0
+    v = found.sought.sign * np.log(sizes)
+    causes = frozenset(found.included)
+    world = World(tuple(conditions), budgets(airs, error=0.02), causes, share, 1, Draws(2000, 0))
+    exceeding = np.array(
+        [(world.stuck(at) > bound * (1 + 1e-9)).mean() for at, bound in zip(v, fractions, strict=True)]
+    )
+    most = 0.05 + 4 * np.sqrt(0.05 * 0.95 / 2000)
+    assert exceeding.max() <= most
+    means = np.array([world.stuck(at).mean() for at in v])
+    assert max((world.stuck(at) > mean).mean() for at, mean in zip(v, means, strict=True)) > most, "a mean does not"
 
 
 # Verdict

@@ -329,7 +329,7 @@ def test_a_dielectric_in_metres_has_no_length(capsys):
 def test_dry_air_is_a_word_or_zero_and_stands_in_the_printed_file(tmp_path, capsys, options):
     (status, of_word), (_, of_zero) = (said(capsys, *options, "--rh", word) for word in ("dry", "0"))
     assert (status, of_word) == (0, of_zero)
-    assert "estimate in dry air, the worst air" in of_word[0]
+    assert "estimate in dry air, the strictest air" in of_word[0]
     assert lengths(of_word) != lengths(said(capsys, *options)[1])
     lines = of_word[of_word.index("run: {pairs: [mine], studies: []}") :]
     assert all("humidities: [dry]" in line for line in lines if "humidities" in line)

@@ -254,11 +254,13 @@ def numbers(text):
     return [float(number) for number in NUMBER.findall(text.rpartition(": ")[2])]
 
 
-def answered(text, expected, error):
-    """Whether an answer has the expected numbers within a relative error, or says that they are not known."""
-    if math.isfinite(expected[0]):
-        return numbers(text) == pytest.approx(expected, rel=error)
-    return "not known" in text
+def rounds_safely(text, size, up):
+    """Whether an answer is a size in three digits, rounded to its safe side, or says that it is not known."""
+    if not math.isfinite(size):
+        return "not known" in text
+    # The formulas of the page differ by less than 1e-5, which can change the last digit.
+    near = {float(bounding(size * (1 + error), 3, up)) for error in (-1e-5, 0, 1e-5)}
+    return len(found := numbers(text)) == 1 and found[0] in near
 
 
 @in_a_browser
@@ -271,7 +273,7 @@ def test_a_page_answers_any_state_as_python_does(run, browser, device):
         browser.run("location.hash = arguments[0]; dispatchEvent(new HashChangeEvent('hashchange'))", address)
         shown = answers(browser)
         stuck = grid.stuck(state)
-        assert answered(shown["safe"], [grid.safe_size(state)], 1e-3)
+        assert rounds_safely(shown["safe"], grid.safe_size(state), grid.falls)
         assert says_fraction(shown["stuck"], stuck.share, (stuck.low, stuck.high), stuck.beyond)
 
 
@@ -293,8 +295,8 @@ def test_the_numbers_of_a_page_are_those_of_its_tables(run, browser):
         browser.open(page_of(run, "C1"))
         state = {"thickness_um": row["thickness_um"], "gap_um": row["gap_um"], "humidity": row["relative_humidity"]}
         browser.run("location.hash = arguments[0]", "&".join(f"{key}={value}" for key, value in state.items()))
-        wanted = pytest.approx([factor * float(row["safe_length_um"])], rel=1e-3)
-        assert browser.wait(lambda wanted=wanted: numbers(answers(browser)["safe"]) == wanted, 5)
+        size = factor * float(row["safe_length_um"])
+        assert browser.wait(lambda size=size: rounds_safely(answers(browser)["safe"], size, up=False), 5)
 
 
 @in_a_browser
@@ -307,8 +309,7 @@ def test_the_controls_begin_with_the_number_of_the_answer(run, browser, device):
         is_unknown = "Too few simulated devices bound a size" in screen and "not known" in shown["safe"]
         assert is_unknown or shown["forbidden"] in screen
     else:
-        four_digits = numbers(shown["safe"])[-1]  # rounded to the safe side, as the answer
-        assert answer[1] == bounding(four_digits, 3, up="At least" in answer[0])
+        assert float(answer[1]) == numbers(shown["safe"])[-1]
     for stuck in re.findall(
         r"(\S+ % \(.* %\)|at (?:most|least) \S+ %) stick", screen.replace("\N{NO-BREAK SPACE}", " ")
     ):

@@ -3,7 +3,7 @@
 Numbers, sides and causes are fields. Pages, tables and sentences are made from them (`stiction.report.answer`).
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
 import numpy as np
@@ -208,8 +208,12 @@ class Answer:
 
     @property
     def known_steps(self) -> tuple[Step, ...]:
-        """Steps after which the size is known."""
-        return tuple(step for step in self.steps if np.isfinite(step.size))
+        """Steps of known sizes: first those inside, to the size to build, then that size with each further cause.
+
+        ASSUME: a cause that is not stated changes the size to build as it changes the size before its step.
+        """
+        beside = (replace(step, size=self.build * step.factor) for step in self.steps if not step.stated)
+        return tuple(step for step in (*self.stated_steps, *beside) if np.isfinite(step.size))
 
     @property
     def stated_steps(self) -> tuple[Step, ...]:
@@ -230,6 +234,25 @@ class Answer:
         """Answer for all stated airs, under the humidity of the one that decides."""
         first = min((air.first for air in self.airs), key=lambda size: self.sought.sign * size, default=np.nan)
         return AnswerInAir(self.stated_steps[-1].humidity, self.build, np.nan, self.stuck, self.curve, first)
+
+    def at_most(self, air: AnswerInAir) -> tuple[np.ndarray, np.ndarray]:
+        """Sizes, and fractions that bound P(stuck) in an air with 95 % confidence, also at the size to build.
+
+        There the bound is the allowed fraction, and up to there no more: the size to build is a quantile of the draws,
+        and P(stuck) increases beyond it in each of them. Beyond it, the upper end of the band is a bound as well.
+
+        Returns
+        -------
+        sizes : array (n,) or (n + 1,)
+            Those of the curves, and the size to build if there is one [m, N].
+        fractions : array, the same shape
+        """
+        v, upper, build = self.sought.sign * np.log(self.sizes), air.curve[2], self.sought.sign * np.log(air.build)
+        if not np.isfinite(build):
+            return self.sizes, upper
+        k = int(np.searchsorted(v, build))
+        upper = np.where(v <= build, np.minimum(upper, self.share), upper)
+        return np.insert(self.sizes, k, air.build), np.insert(upper, k, self.share)
 
     @property
     def is_by_tip(self) -> bool:

@@ -15,6 +15,7 @@ from stiction.report.style import humidity_colour
 from stiction.stages.life.answers import Name
 
 SIZES = np.linspace(100e-6, 300e-6, 41)
+DECIDES = "all airs; RH 0.92 decides"
 
 
 def curve(median):
@@ -39,13 +40,20 @@ def test_what_decides_is_in_full_colour_and_the_other_airs_are_dashed():
     answer = answered()
     (panel,) = risk({"C1": answer}).axes
     found = lines_of(panel)
-    decides, other = found["all airs, mostly RH 0.92"], found["RH 0.44"]
-    np.testing.assert_allclose(decides.get_xydata(), np.transpose([1e6 * SIZES, answer.curve[0]]))
-    np.testing.assert_allclose(other.get_ydata(), answer.airs[0].curve[0])
-    assert len(found) == 2, "the air that decides is the curve of all"
+    decides, other = found[DECIDES], found["RH 0.44 alone"]
+    (mean,) = (line for line in panel.lines if line.get_linewidth() < 1 and len(line.get_xdata()) > 2)
+    np.testing.assert_allclose(mean.get_xydata(), np.transpose([1e6 * SIZES, answer.curve[0]]))
+    np.testing.assert_allclose(decides.get_xydata(), np.transpose(answer.at_most(answer.together)) * [1e6, 1])
+    np.testing.assert_allclose(other.get_ydata(), answer.airs[0].curve[2])
+    assert len(found) == 3, "the air that decides is the curve of all"
+    assert mean.get_color() == decides.get_color()
     for line, humidity in ((decides, 0.92), (other, 0.44)):
         assert to_rgb(line.get_color()) == humidity_colour(humidity)[:3]
     assert (other.get_linestyle(), decides.get_linestyle()) == ("--", "-")
+    three = replace(answer, airs=(*answer.airs, replace(answer.airs[0], humidity=0.67)))
+    dashes = [line._unscaled_dash_pattern for line in risk({"C1": three}).axes[0].lines if "alone" in line.get_label()]
+    assert len(dashes) == 2
+    assert dashes[0] != dashes[1], "two airs alone are told apart without their colours"
     assert other.get_linewidth() < decides.get_linewidth()
     assert panel.get_yscale() == "log"
     assert panel.get_title(loc="left") == "C1, cantilever"
@@ -55,7 +63,7 @@ def test_the_simulated_limit_and_the_size_to_build_are_lines_and_the_latter_is_s
     (panel,) = risk({"C1": answered()}).axes
     assert not panel.patches, "no colour mixes with that of the band"
     lines = {line.get_label(): line for line in panel.lines}
-    names = "limit by simulation, exact inputs", "to build: allowed share, 95 % confidence"
+    names = "limit by simulation, exact inputs", "to build: thick line at allowed"
     limit, build = (lines[name] for name in names)
     assert [limit.get_xdata()[0], build.get_xdata()[0]] == pytest.approx([155, 140])
     assert [limit.get_linestyle(), build.get_linestyle()] == ["--", "-"]
@@ -65,11 +73,37 @@ def test_the_simulated_limit_and_the_size_to_build_are_lines_and_the_latter_is_s
     assert sorted(upright) == pytest.approx([140, 155, 250]), "to build, by simulation, and stated"
 
 
+def at(line, size):
+    """Value of a curve where it has a size [µm]."""
+    return dict(line.get_xydata().round(9).tolist())[size]
+
+
+@pytest.mark.parametrize(
+    ("build", "seen"), [(140e-6, False), (151e-6, True), (171e-6, True)]
+)  # none is seen to stick at the first; at the last the upper end of the band is far above
+def test_the_thick_line_is_at_the_allowed_fraction_at_the_size_to_build(build, seen):
+    drawn = answered(build=build)
+    assert (np.interp(build, SIZES, drawn.curve[2]) > 2 * drawn.share) == seen
+    for unit, sign in (("m", 1), ("N", -1)):
+        sizes = SIZES[::sign]
+        answer = replace(drawn, unit=unit, sizes=sizes)
+        (panel,) = risk({"C1": answer}).axes
+        line = lines_of(panel)[DECIDES]
+        assert at(line, 1e6 * build) == answer.share
+        safe = sign * line.get_xdata() <= sign * 1e6 * build + 1e-6
+        assert line.get_ydata()[safe].max() == answer.share
+        beyond = answer.curve[2][sign * sizes > sign * build]
+        np.testing.assert_allclose(line.get_ydata()[~safe], beyond)
+        mean = np.interp(1e6 * build, 1e6 * SIZES, answer.curve[0][::sign])
+        assert mean != pytest.approx(answer.share, rel=0.1), "the control: the mean does not meet it"
+
+
 def test_the_band_ends_where_the_simulation_no_longer_resolves_it():
     expected, low, high = curve(199e-6)
     floored = np.array([expected, low, np.maximum(high, 1e-3)])
     last = SIZES[np.argmax(high > 1e-3) - 1]  # next to the first size with a resolved end
-    for drawn, first in ((replace(answered(), curve=floored), last), (answered(), SIZES[0])):
+    unknown = answered(build=np.nan)
+    for drawn, first in ((replace(unknown, curve=floored), last), (unknown, SIZES[0])):
         (panel,) = risk({"C1": drawn}).axes
         (band,) = panel.collections
         assert band.get_paths()[0].vertices[:, 0].min() == pytest.approx(1e6 * first)
@@ -79,16 +113,18 @@ def test_legends_are_below_all_panels_and_name_what_is_drawn_once():
     figure = risk({"C1": answered(), "C2": answered(build=np.nan, size=np.nan)})
     (common,) = figure.legends
     assert [text.get_text() for text in common.get_texts()] == [
-        "mean; the worst 5 % count",
+        "95 % confidence: no more stick",
+        "mean, with the worst 5 % of cases",
         "limit by simulation, exact inputs",
-        "to build: allowed share, 95 % confidence",
+        "to build: thick line at allowed",
         "stated size",
+        "mean",
     ]
-    for panel in figure.axes:
+    for panel, band in zip(figure.axes, ([], ["its 95 % band"]), strict=True):
         airs = [text.get_text() for text in panel.get_legend().get_texts()]
-        assert airs == ["RH 0.44", "all airs, mostly RH 0.92", "its 95 % band"]
-        drawn, (*_, shown) = panel.collections[0], panel.get_legend().legend_handles
-        np.testing.assert_array_equal(shown.get_facecolor(), drawn.get_facecolor()[0])
+        assert airs == ["RH 0.44 alone", DECIDES, *band]
+        for drawn, shown in zip(panel.collections, panel.get_legend().legend_handles[2:], strict=True):
+            np.testing.assert_array_equal(shown.get_facecolor(), drawn.get_facecolor()[0])
 
 
 def test_stricter_sizes_are_marked_at_the_allowed_fraction_and_stated_in_the_title():
@@ -100,7 +136,7 @@ def test_stricter_sizes_are_marked_at_the_allowed_fraction_and_stated_in_the_tit
     assert panel.get_title(loc="left").splitlines() == [
         "C1, cantilever",
         "stricter: 138 µm between these airs",
-        "(interpolated: state RH\N{NO-BREAK SPACE}0.8)",
+        "(interpolated at RH\N{NO-BREAK SPACE}0.8: compute it)",
         "stricter: 90 µm if water dries on it",
     ]
     (without,) = risk({"C1": answered(between=Between(0.8, 140.4e-6, 140e-6))}).axes  # reads as the size to build
@@ -114,7 +150,7 @@ def test_the_ladder_which_has_no_titles_names_stricter_sizes_in_its_legend():
         steps, stuck = figure.axes
         names = [text.get_text() for text in stuck.get_legend().get_texts()]
         assert [name for name in names if "stricter" in name] == said
-        assert {"its 95 % band", "mean; the worst 5 % count", "limit by simulation, exact inputs"} < set(names)
+        assert {"95 % confidence: no more stick", "limit by simulation, exact inputs"} < set(names)
         assert (steps.get_legend(), figure.legends, covering(figure)) == (None, [], []), "below its own panel"
 
 
@@ -151,10 +187,23 @@ def test_the_ladder_has_a_row_for_each_step_and_the_curve_beside_it():
     assert beside(steps) == [
         "estimate 160 µm",
         "error of the simulation 155 µm (−10.0 %)",
-        "uncertainty of the inputs 140 µm (−10.0 %)",
+        "uncertainty of the inputs: to build 140 µm (−10.0 %)",
     ]
     assert not steps.texts, "nothing lies on bars and lines"
-    assert "all airs, mostly RH 0.92" in lines_of(stuck)
+    assert DECIDES in lines_of(stuck)
+
+
+def test_a_step_that_is_not_stated_begins_at_the_size_to_build():
+    whole = answered()
+    fast = Step(Cause.FAST, 150e-6, 0.8, 0.92, "S-shape", "fast_strips", stated=False)
+    steps = (*whole.steps[:2], fast, whole.steps[2])
+    panel = ladder(replace(whole, steps=steps)).axes[0]
+    assert beside(panel)[2:] == [
+        "uncertainty of the inputs: to build 140 µm (−10.0 %)",
+        "fast separation, as in a shock (not stated) 112 µm (−20.0 %)",
+    ]
+    bars = [line.get_xdata() for line in panel.lines if line.get_linewidth() == 5]
+    np.testing.assert_allclose(bars[2:], [[155, 140], [140, 112]])
 
 
 @pytest.mark.parametrize("known", [3, 1])

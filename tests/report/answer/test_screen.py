@@ -28,12 +28,13 @@ from answers import (
 )
 from drawn_curves import etched, law_of, rough
 
-from stiction.answer.data import Verdict
+from stiction.answer.data import Probability, Verdict
 from stiction.answer.sought import FORCE, LENGTH
 from stiction.beam.cantilever import Beam
 from stiction.beam.energy import apparent_adhesion_energy
 from stiction.devices.budget import LARGEST
 from stiction.devices.limits import rules as limits
+from stiction.devices.risk import one_in
 from stiction.report.answer import words
 from stiction.report.axes.section import with_process
 from stiction.report.format import safe_size
@@ -62,10 +63,10 @@ def test_without_a_length_the_answer_is_the_length_to_build_in_the_worst_air():
     assert answer.build == pytest.approx(least(lengths[0.67]), rel=5e-3)
     assert (shown.tone, shown.sign) == ("good", "Length to build")
     assert shown.answer == f"No longer than {safe_size(answer.build, LENGTH)}."
-    assert shown.points["What decides"].startswith("RH 0.67, the worst of the stated airs, stuck by the tip.")
+    assert shown.points["What decides"].startswith("RH 0.67, the strictest of the stated airs, stuck by the tip.")
     assert "at relative humidities of 0.44, 0.67 (95 % confidence, if the model holds)." in shown.basis[0]
     assert "All inputs count as exact." in shown.basis[1]
-    assert shown.cells["RH"].tolist() == ["0.44", "0.67"]
+    assert shown.cells["RH"].tolist() == ["0.44", "0.67 (decides)"]
     alone = [1e6 * least(one) for one in lengths.values()]
     np.testing.assert_allclose(shown.cells["length to build [µm]"].astype(float), alone, rtol=1e-2)
 
@@ -92,8 +93,8 @@ def test_dry_air_is_in_words():
     stopped = screen_of(stopper_answer(forces), STOPPER)
     released = screen_of(beam_answer(section, {0.0: of_length(400e-6)}), section)
     for shown in (stopped, released):
-        assert shown.points["What decides"].startswith(("Dry air, the worst", "Dry air, stuck by"))
-        assert shown.cells.RH[0] == "dry"
+        assert shown.points["What decides"].startswith(("Dry air, the strictest", "Dry air, stuck by"))
+        assert shown.cells.RH[0].removesuffix(" (decides)") == "dry"
     assert " in dry air (95 % confidence, if the model holds)." in beam_page(CANTILEVER, {0.0: safe()}).summary.basis[0]
 
 
@@ -313,19 +314,44 @@ def test_what_decides_a_stopper_is_the_air_of_the_largest_force_in_its_table():
         for force in (1e-9, 19e-6, 1.0):
             shown = screen_of(stopper_answer(forces.assign(restoring_force=force)), STOPPER)
             worst = shown.cells.RH[shown.cells["force to build [µN]"].astype(float).idxmax()]
-            assert shown.points["What decides"].startswith("Dry air, " if worst == "dry" else f"RH {worst}, ")
+            named = "Dry air, " if worst == "dry (decides)" else f"RH {worst.removesuffix(' (decides)')}, "
+            assert "(decides)" in worst
+            assert shown.points["What decides"].startswith(named)
 
 
-def test_an_air_that_is_stricter_alone_is_named_beside_the_one_that_decides_together():
+@pytest.mark.parametrize("factor", [0.99, 1.01, np.nan])
+def test_an_air_that_decides_in_most_draws_need_not_be_the_strictest_alone(factor):
     forces = stopper_dataset().assign_coords(humidity=[0.44, 0.67])
     answer = stopper_answer(forces)
     decides = answer.stated_steps[-1].humidity
-    assert ", the worst of the stated airs." in words.decides(answer)
     (strictest,) = (air for air in answer.airs if air.humidity == decides)
-    airs = tuple(air if air is strictest else replace(air, build=1.01 * strictest.build) for air in answer.airs)
-    (other,) = {0.44, 0.67} - {decides}
+    airs = tuple(air if air is strictest else replace(air, build=factor * strictest.build) for air in answer.airs)
     said = words.decides(replace(answer, airs=airs))
-    assert said.startswith(f"RH {decides}, in most draws of all stated airs together (alone, RH {other} is stricter).")
+    assert said.startswith(f"RH {decides}, {'most often ' * (factor > 1)}the strictest of the stated airs.")
+
+
+def test_one_air_has_one_size_and_that_of_the_air_that_decides_is_in_all_of_them():
+    answer = stopper_answer(stopper_dataset().assign_coords(humidity=[0.44, 0.67], restoring_force=20e-6))
+    together = replace(answer, build=1.02 * max(air.build for air in answer.airs), stuck=Probability(0.9, 0.8, 0.95))
+    rows = {row["RH"]: row for row in words.of_airs(together)}
+    (decides,) = (air for air in answer.airs if air.humidity == together.together.humidity)
+    row = rows.pop(f"{decides.humidity:g} (decides)")
+    assert row["force to build [µN]"] == safe_size(together.build, together.sought).split()[0]
+    assert row["force to build [µN]"] != safe_size(decides.build, together.sought).split()[0]
+    assert row["P(stuck) at 20 µN"] == words.stuck_in_words(together.stuck)
+    ((text, other),) = rows.items()  # the control: another air has its own
+    (air,) = (air for air in answer.airs if air is not decides)
+    assert text == f"{air.humidity:g}"
+    assert other["force to build [µN]"] == safe_size(air.build, together.sought).split()[0]
+    (single,) = words.of_airs(replace(answer, airs=(decides,)))
+    assert single["RH"] == f"{decides.humidity:g}"
+
+
+@pytest.mark.parametrize(("touchdowns", "said"), [(1, "one touchdown"), (20_000, "20 000 touchdowns")])
+def test_a_size_to_build_says_for_how_many_touchdowns_it_is(touchdowns, said):
+    for answer in (beam_answer(CANTILEVER, {0.67: safe()}), stopper_answer(stopper_dataset())):
+        promised = words.promise(replace(answer, touchdowns=touchdowns))
+        assert promised.startswith(f"At most {one_in(answer.share)} sticks after {said} at ")
 
 
 @pytest.mark.parametrize(

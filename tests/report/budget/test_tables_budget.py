@@ -160,7 +160,7 @@ def test_the_last_row_of_a_stopper_bounds_all_humidities_of_the_axis():
 
 def test_a_worst_humidity_at_the_end_of_the_axis_may_lie_beyond_it():
     cells = tables_budget.stoppers(STOPPERS, WARNINGS).cells
-    assert list(cells["worst RH"]) == ["0.700 ± 0.015"] * 3 + ["0.9 or beyond"] * 3
+    assert list(cells["RH of largest mean"]) == ["0.700 ± 0.015"] * 3 + ["0.9 or beyond"] * 3
 
 
 def test_a_safe_force_that_is_fitted_or_extrapolated_says_so():
@@ -402,9 +402,12 @@ def test_a_stopper_shows_the_larger_force_to_build_between_its_airs(is_allowed):
         known, between=Between(0.6, 1.5 * known.build, known.build), forbidden=() if is_allowed else ("gap",)
     )
     shares, panel = figures_budget.stoppers({"S1": STOPPERS["S1"]}, {}, {"S1": answer}).axes
-    label = f"between them, interpolated, RH 0.6: {safe_size(1.5 * known.build, known.sought)}"
+    label = f"strictest air, RH 0.6, interpolated: to build {safe_size(1.5 * known.build, known.sought)}"
     marks = [line.get_xydata() for line in panel.lines if line.get_label() == label]
     assert_allclose(marks, [[[0.6, 1.5e6 * known.build]]] if is_allowed else [])
+    texts = [text.get_text() for text in panel.get_legend().get_texts()]
+    assert sum("strictest" in text for text in texts) == is_allowed, "the largest mean and limit are called so"
+    assert [text.startswith("largest ") for text in texts].count(True) == 2
     label = f"stricter: {safe_size(1.5 * known.build, known.sought)}"
     lines = [line.get_xdata()[0] for line in shares.lines if line.get_label() == label]
     assert_allclose(lines, [1.5e6 * known.build] if is_allowed else [])
@@ -462,4 +465,4 @@ def test_a_budget_without_other_choices_of_the_model_has_no_empty_panel():
 
 def test_the_worst_humidity_in_a_figure_is_by_the_mean():
     legend = figures_budget.stoppers({"S1": STOPPERS["S1"]}, {}).axes[1].get_legend()
-    assert [text.get_text() for text in legend.get_texts()][-1] == "worst humidity 0.70, by the mean"
+    assert [text.get_text() for text in legend.get_texts()][-1] == "largest mean, RH 0.70"

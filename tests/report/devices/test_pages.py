@@ -22,6 +22,7 @@ from answers import (
     least,
     of_length,
     safe,
+    stopper_answer,
     stopper_dataset,
     stopper_page,
 )
@@ -31,12 +32,14 @@ from matplotlib.figure import Figure
 from noted import noted
 
 import stiction
+from stiction.answer.data import Between, Cause
 from stiction.contact.environment import Water
 from stiction.devices.risk import VERIFIED
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
 from stiction.report.devices import pages, sentences
 from stiction.report.devices import tables as tables_devices
+from stiction.report.format import safe_size
 from stiction.report.page import Page, Section, Summary
 from stiction.report.surfaces.words import surface_in_words
 from stiction.stages.axes import requirement, roughness
@@ -72,17 +75,23 @@ def test_the_page_of_a_stopper_says_how_many_stick_and_in_which_air(stopper):
         "mean force is largest at a relative humidity of 0.70: larger than in drier and wetter air, from 0.4 to 0.9"
         in stopper
     )
-    assert "In the worst air of this range, at most 0.918 % stick at one touchdown." in stopper
+    assert "Where most stick in this range, at most 0.918 % do at one touchdown." in stopper
     found = STOPPERS["S1"].sel(share=1e-2)
     stated, any_air = (
         1e6 * float(force.max()) for force in (found.safe_force.sel(part="safe"), found.safe_force_along)
     )
-    assert f"a restoring force of {stated:.3g} µN leaves at most 1 in 100 stuck (95 % confidence)" in stopper
+    assert (
+        f"a restoring force of {stated:.3g} µN leaves at most 1 in 100 stuck at one touchdown (95 % confidence)"
+        in stopper
+    )
     assert f"; at any humidity from 0.4 to 0.9, {any_air:.3g} µN are needed." in stopper
     assert (
-        "leaves at most 1 in 1000 stuck (95 % confidence, by a line through the largest 5 % of the forces)" in stopper
+        "leaves at most 1 in 1000 stuck at one touchdown (95 % confidence, by a line through the largest 5 % of the "
+        "forces)" in stopper
     )
-    assert "leaves at most 1 in 1 000 000 stuck (extrapolated, by a line" in stopper.replace("\N{NO-BREAK SPACE}", " ")
+    assert "leaves at most 1 in 1 000 000 stuck at one touchdown (extrapolated, by a line" in stopper.replace(
+        "\N{NO-BREAK SPACE}", " "
+    )
     assert "<td>3 x 3 µm</td>" in stopper
     assert "<td>relative humidities</td><td>0.44, 0.67</td>" in stopper
 
@@ -90,8 +99,8 @@ def test_the_page_of_a_stopper_says_how_many_stick_and_in_which_air(stopper):
 def test_a_worst_humidity_at_the_end_is_stated_as_one():
     assert sentences.worst_sentence(stopper_dataset(peak=1.0)) == (
         "Between relative humidities of 0.4 and 0.9, its mean force is largest at 0.9. "
-        "The few places that hold most can hold more in other air. "
-        "In the worst air of this range, at most 0.918 % stick at one touchdown."
+        "The strictest air can be another one: the few places that hold most decide. "
+        "Where most stick in this range, at most 0.918 % do at one touchdown."
     )
 
 
@@ -125,7 +134,7 @@ def test_a_page_names_the_roughness_that_was_asked_for_and_its_answer_in_the_sec
 
 def test_a_bound_of_all_stoppers_is_no_statement():
     all_stuck = stopper_dataset().assign(stuck_along=xr.ones_like(STOPPERS["S1"].stuck_along))
-    assert sentences.worst_sentence(all_stuck).endswith("can hold more in other air.")
+    assert sentences.worst_sentence(all_stuck).endswith("the few places that hold most decide.")
 
 
 def test_advice_warnings_and_what_is_not_modelled_are_shown(stopper):
@@ -136,11 +145,31 @@ def test_advice_warnings_and_what_is_not_modelled_are_shown(stopper):
 
 def test_sentences_on_safe_forces_begin_with_the_humidities_of_the_stopper():
     found = STOPPERS["S1"]
-    assert sentences.safe_force_sentences(found)[0].startswith(
+    answer = stopper_answer(found)
+    assert sentences.safe_force_sentences(found, answer)[0].startswith(
         "By simulation alone, at all these humidities, a restoring force of"
     )
-    single = sentences.safe_force_sentences(found.sel(humidity=[0.67]))
+    single = sentences.safe_force_sentences(found.sel(humidity=[0.67]), answer)
     assert single[0].startswith("By simulation alone, at a relative humidity of 0.67, a restoring force of")
+
+
+def test_the_limit_for_the_fraction_of_the_answer_stands_beside_the_force_to_build():
+    found = STOPPERS["S1"]
+    exact = replace(stopper_answer(found), share=1e-3, touchdowns=1000)
+    (step,) = (step for step in exact.steps if step.cause is Cause.SIMULATION)
+    answer = replace(exact, steps=(*exact.steps, replace(step, cause=Cause.INPUTS)))
+    told = sentences.safe_force_sentences(found, answer)
+    assert [" The force to build, " in text for text in told] == ["1 in 1 000 000 " in text for text in told]
+    assert sum(" The force to build, " in text for text in told) == 1
+    assert told[-1].endswith(
+        f" The force to build, {safe_size(answer.build, answer.sought)}, allows the same 1 in 1 000 000 at each of "
+        "1000 touchdowns, and counts the uncertainty of the inputs as well."
+    )
+    between = replace(answer, between=Between(0.5, 2 * answer.build, 3 * answer.build))
+    size = safe_size(2 * answer.build, answer.sought)
+    assert f" ({size} between the stated airs), allows" in sentences.safe_force_sentences(found, between)[-1]
+    for control in (exact, replace(answer, touchdowns=300), replace(answer, forbidden=("gap",))):
+        assert "force to build" not in " ".join(sentences.safe_force_sentences(found, control))
 
 
 def test_a_page_explains_the_terms_that_it_uses_and_no_others():

@@ -19,7 +19,8 @@ from stiction.life.freeing import probability_for
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
 from stiction.report.answer import tables, words
-from stiction.stages.answer import answer, conditions
+from stiction.report.format import safe_size
+from stiction.stages.answer import answer, beside, conditions
 from stiction.stages.contact import curves
 from stiction.stages.devices import safe_lengths, stoppers
 from stiction.stages.devices.opening import ARC, EITHER, FORCE, S_SHAPE
@@ -344,8 +345,26 @@ def test_a_stated_shock_puts_fast_separation_inside_and_moves_it_between_no_numb
     named = [list(tables.steps(one)["step"]) for one in (slow, shaken)]
     assert [[row for row in of if "shock" in row] for of in named] == [
         ["fast separation, as in a shock (not stated)"],
-        ["fast separation, as in a shock"],
+        ["fast separation, as in a shock: to build"],
     ]
+
+
+@pytest.mark.parametrize("uncertain", [False, True])
+def test_what_is_not_stated_has_one_size_in_the_ladder_and_in_the_first_sentence(uncertain):
+    data, settings = data_of_stopper()
+    found = answer.compute(data, settings)
+    if uncertain:
+        found = replace(found, build=1.1 * found.build, unasked=())
+        found = replace(found, unasked=beside.unasked(data["life"], found))
+    (fast,) = found.unasked
+    (step,) = (step for step in found.steps if step.cause is Cause.FAST)
+    assert (step.size == pytest.approx(fast.size, rel=1e-9)) is not uncertain, "the ladder's own is before the inputs"
+    *_, build, last = tables.steps(found).itertuples(index=False)
+    assert last[1] == safe_size(fast.size, found.sought)
+    assert last[0] == "fast separation, as in a shock (not stated)"
+    assert (build[0].endswith(": to build"), "to build" in last[0]) == (True, False)
+    forbidden = tables.steps(replace(found, forbidden=("gap",)))
+    assert not any("to build" in text for text in forbidden["step"])
 
 
 def test_a_shock_that_nothing_bounds_is_stated_but_not_inside():

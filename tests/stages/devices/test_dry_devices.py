@@ -236,14 +236,14 @@ def test_a_stopper_in_dry_air_alone_is_in_no_humid_air(grounds):
         assert "orst humidity" not in page
     alone = tables_budget.stoppers({"S1": layout}, {"S1": []})
     assert list(alone.cells.RH) == ["dry"]
-    assert "worst RH" not in alone.cells
+    assert "RH of largest mean" not in alone.cells
     assert "axis" not in alone.caption
     legend = figures_budget.stoppers({"S1": layout}, {}).axes[1].get_legend()
     shown = ["mean and 5 to 95 %, dry", "simulated limit, 1 in 100", "restoring force"]
     assert [text.get_text() for text in legend.texts] == shown
     both = tables_budget.stoppers({"S1": layout, "S2": humid_layout()}, {"S1": [], "S2": []})
     assert list(both.cells.RH) == ["dry", "0.67", "0.6 to 0.9"]
-    assert list(both.cells["worst RH"])[0] == "dry"
+    assert list(both.cells["RH of largest mean"])[0] == "dry"
     assert "One in a single air has no such row." in both.caption
 
 

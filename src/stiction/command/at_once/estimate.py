@@ -278,7 +278,7 @@ def shown(estimate: Estimate) -> Iterator[str]:
     """Lines of an answer."""
     asked, (name, symbol) = estimate.question, _WORDS[estimate.question.unit]
     left_open = ", typical surfaces stand for what is not stated" * any(asked.members)
-    where = f"{Air(estimate.humidity).where}, the worst air"
+    where = f"{Air(estimate.humidity).where}, the strictest air"
     yield f"{asked.name}: estimate {where}; stated inputs count as exact{left_open}"
     yield f"  stuck            {f'{name} [{symbol}]':<15}90 %            95 %"
     for row in estimate.rows:

@@ -2,7 +2,7 @@
 
 import textwrap
 from collections.abc import Mapping
-from itertools import chain
+from itertools import chain, cycle
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -48,6 +48,13 @@ _STRICTER = {"color": "black", "marker": "v", "linestyle": "", "markersize": 6}
 _IN_TITLES = "stricter sizes, in the titles"
 #: Most characters of a line above one of three panels, and of a line of its legend.
 _LINE = 38
+#: Dashes of airs alone, in turn, and widths of the curves of all airs and of their mean [points].
+_DASHES, _THICK, _THIN = ((0, (5, 2)), (0, (1.2, 1.2)), (0, (7, 2, 1.2, 2))), 2.0, 0.7
+#: What curves mean, with their widths, by whether there is a size to build.
+_MEANINGS = {
+    True: {"95 % confidence: no more stick": _THICK, "mean, with the worst 5 % of cases": _THIN},
+    False: {"mean": _THICK},
+}
 #: Place of the label of a fraction.
 _LABEL = {"xycoords": ("axes fraction", "data"), "va": "bottom", "fontsize": 7, "path_effects": OUTLINED}
 
@@ -86,10 +93,10 @@ def _steps(panel: Axes, answer):
 
 
 def _label_of_row(answer, row):
-    """Cause of a row of the ladder with its size and change."""
+    """Words on a row of the ladder with its size and change."""
     step = answer.known_steps[row]
     change = with_minus(f" ({100 * (step.factor - 1):+.1f} %)") if row else ""
-    return f"{textwrap.fill(words.CAUSES[step.cause][0], _WIDE)}\n{safe_size(step.size, answer.sought)}{change}"
+    return f"{textwrap.fill(words.step_in_words(answer, step), _WIDE)}\n{safe_size(step.size, answer.sought)}{change}"
 
 
 def _stated(panel, answer, scale):
@@ -139,9 +146,10 @@ def _wrapped(line):
 
 
 def _stuck(panel: Axes, answer, stricter=_IN_TITLES):
-    """Expected P(stuck) in all stated airs with its band, dashed in each of the others, and the size to build.
+    """Bound of P(stuck) in all stated airs, dashed in each of the others alone, its mean, and the size to build.
 
-    Sizes that are ``stricter`` are named in the legend.
+    Without a size to build, means are drawn in place of bounds, with the band of all airs. Sizes that are ``stricter``
+    are named in the legend.
     """
     scale, label = _axis(answer)
     panel.set_xlabel(label)
@@ -149,28 +157,41 @@ def _stuck(panel: Axes, answer, stricter=_IN_TITLES):
         panel.set(xticks=[], yticks=[])
         panel.text(0.5, 0.5, words.sign_of(answer)[1], ha="center", transform=panel.transAxes)
         return
-    sizes, (expected, *band) = answer.sizes / scale, answer.curve
-    for air in answer.airs:
-        if air.humidity != answer.together.humidity:
-            colour = humidity_colour(air.humidity)
-            panel.plot(sizes, air.curve[0], "--", color=colour, alpha=0.8, linewidth=1, label=Air(air.humidity).words)
-    colour, decides = humidity_colour(answer.together.humidity), Air(answer.together.humidity).words
-    label_of_airs = f"all airs, mostly {decides}" if len(answer.airs) > 1 and np.isfinite(answer.share) else decides
-    panel.plot(sizes, expected, color=colour, linewidth=1.6, label=label_of_airs)
-    style = {"color": colour, "alpha": 0.2, "linewidth": 0}
-    panel.fill_between(sizes, *band, where=_resolved(band[1]), label="its 95 % band", **style)
+    _curves(panel, answer, scale)
     legend_below(panel, panel.get_legend_handles_labels()[0])
-    panel.plot([], [], color="0.3", linewidth=1.6, label="mean; the worst 5 % count")
+    for label, width in _MEANINGS[bool(np.isfinite(answer.build))].items():
+        panel.plot([], [], color="0.3", linewidth=width, label=label)
     if np.isfinite(answer.share):
         panel.axhline(answer.share, color="0.4", linestyle=":", linewidth=0.8)
         at, side = (0.01, "left") if answer.sought.more_is_better else (0.99, "right")  # clear of marks
         panel.annotate("allowed", (at, answer.share), ha=side, **_LABEL)
     _size_to_build(panel, answer, scale)
     beside = _stricter(panel, answer, scale, stricter)
-    lowest = _LOWEST * np.nan_to_num(answer.share, nan=UNLIKELY)
+    sizes, lowest = answer.sizes / scale, _LOWEST * np.nan_to_num(answer.share, nan=UNLIKELY)
     left = 0 if answer.sought.more_is_better else min([sizes.min(), *(0.98 * size for size in beside)])
     panel.set(yscale="log", xlim=(left, max([sizes.max(), *(1.02 * size for size in beside)])), ylim=(lowest, 1.3))
     panel.yaxis.set_major_formatter(lambda share, _: "all" if share == 1 else one_in(share))
+
+
+def _curves(panel, answer, scale):
+    """P(stuck) in each stated air alone and, thick, in all of them."""
+    has_build, is_together = np.isfinite(answer.build), len(answer.airs) > 1 and bool(np.isfinite(answer.share))
+    together, alone = answer.together, " alone" * is_together
+    others = [air for air in answer.airs if air.humidity != together.humidity]
+    for air, dashes in zip(others, cycle(_DASHES), strict=False):
+        sizes, fractions = answer.at_most(air) if has_build else (answer.sizes, air.curve[0])
+        style = {"linestyle": dashes, "color": humidity_colour(air.humidity), "linewidth": 1.1}
+        panel.plot(sizes / scale, fractions, **style, label=f"{Air(air.humidity).words}{alone}")
+    colour, decides = humidity_colour(together.humidity), Air(together.humidity).words
+    sizes, fractions = answer.at_most(together) if has_build else (answer.sizes, together.curve[0])
+    label = f"all airs; {decides} decides" if is_together else decides
+    panel.plot(sizes / scale, fractions, color=colour, linewidth=_THICK, label=label)
+    if has_build:
+        panel.plot(answer.sizes / scale, answer.curve[0], color=colour, linewidth=_THIN)
+        return
+    band = answer.curve[1:]
+    style = {"color": colour, "alpha": 0.2, "linewidth": 0, "label": "its 95 % band"}
+    panel.fill_between(answer.sizes / scale, *band, where=_resolved(band[1]), **style)
 
 
 def _stricter(panel, answer, scale, label):
@@ -203,9 +224,7 @@ def _size_to_build(panel, answer, scale):
         panel.axvline(
             limit / scale, color=BUILD, linestyle="--", linewidth=1, label="limit by simulation, exact inputs"
         )
-        panel.axvline(
-            answer.build / scale, color=BUILD, linewidth=1.5, label="to build: allowed share, 95 % confidence"
-        )
+        panel.axvline(answer.build / scale, color=BUILD, linewidth=1.5, label="to build: thick line at allowed")
         side, end = (3, "left") if answer.sought.more_is_better else (-3, "right")  # clear of the curve
         style = {"xytext": (side, -3), "textcoords": "offset points", "ha": end, "va": "top", "rotation": 90}
         label = f"build {safe_size(answer.build, answer.sought)}"

@@ -67,7 +67,7 @@ def change(answer: Answer, section: Mapping[str, Any]) -> str:
             return "Compute more patches: contact.samples."
         if answer.is_enough and not answer.is_enough_between:
             safe, air = answer.in_words(answer.between.safe), f"{answer.between.humidity:.2g}"
-            return f"A restoring force of {safe} suffices between these airs, too; state RH {air} to know it better."
+            return f"A restoring force of {safe} suffices between these airs, too; add RH {air} to know it better."
         return "Nothing." if answer.is_enough else f"A restoring force of {words.to_build(answer)}."
     if section.get("residual_stress_MPa", 0):
         return (

@@ -22,8 +22,8 @@ _SHOWS = (
     Term(
         "To build",
         "the largest length, or the smallest restoring force, with at most this fraction stuck in all stated airs, "
-        "after all stated touchdowns, at the stated voltage and tilts, with 95 % confidence if the model holds; the "
-        "simulation and all stated or assumed uncertainties are inside.",
+        "after one touchdown or all stated ones, at the stated voltage and tilts, with 95 % confidence if the model "
+        "holds; the simulation and all stated or assumed uncertainties are inside.",
     ),
     Term(
         "But",
@@ -160,10 +160,10 @@ def _bound(value, unit):
 
 
 def steps(answer: Answer) -> pd.DataFrame:
-    """Steps from the estimate to the size to build, for reading."""
+    """Steps from the estimate to the size to build, and beyond it by what is not stated, for reading."""
     return pd.DataFrame(
         {
-            "step": words.CAUSES[step.cause][0] + " (not stated)" * (not step.stated),
+            "step": words.step_in_words(answer, step),
             f"{answer.sought.name} after it": safe_size(step.size, answer.sought),
             "change [%]": number(100 * (step.factor - 1), "+.1f") if k else "",
             "air": Air(step.humidity).words,

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from stiction.answer.data import INPUTS, Answer, Cause, Probability, Verdict
+from stiction.answer.data import INPUTS, Answer, Cause, Probability, Step, Verdict
 from stiction.answer.sought import FORCE, LENGTH, PULL_OFF
 from stiction.constants import ZERO_CELSIUS
 from stiction.contact.air import Air
@@ -104,6 +104,15 @@ def _digits(fraction, end):
     return 1 if end == "high" and _NEAR * power < fraction < power < 1 else 2
 
 
+def step_in_words(answer: Answer, step: Step) -> str:
+    """Cause of a step, as the row of a ladder. The size to build, and what is not inside it, are marked."""
+    cause = CAUSES[step.cause][0]
+    if not step.stated:
+        return f"{cause} (not stated)"
+    is_last = step is answer.stated_steps[-1] and not answer.forbidden and np.isfinite(answer.build)
+    return f"{cause}: to build" if is_last else cause
+
+
 def stuck_in_words(stuck: Probability) -> str:
     """P(stuck) with its band. Where no simulated device sticks, its upper end alone, or with a larger expectation.
 
@@ -112,12 +121,12 @@ def stuck_in_words(stuck: Probability) -> str:
     >>> stuck_in_words(Probability(0.18, 1e-9, 0.95)), stuck_in_words(Probability(1e-9, 0.0, 0.0037, none_seen=True))
     ('18 % (0 to 95 %)', 'at most 0.37 %')
     >>> stuck_in_words(Probability(0.002, 0.0, 0.001, none_seen=True))
-    'at most 0.1 % (95 % confidence; many can in the other 5 % of all cases, 0.2 % on average)'
+    'at most 0.1 % (95 % confidence; 0.2 % on average, as many stick in the worst 5 %)'
     """
     if stuck.none_seen:
         most, mean = percent(stuck.high, "high"), percent(stuck.value)
         more = (
-            f" (95 % confidence; many can in the other 5 % of all cases, {mean} on average)"
+            f" (95 % confidence; {mean} on average, as many stick in the worst 5 %)"
             if stuck.value > stuck.high and mean != most
             else ""
         )
@@ -171,7 +180,8 @@ def stricter(answer: Answer) -> list[str]:
     """Stricter sizes of airs between the stated ones, which are interpolated, and of what nothing stated asks for."""
     at, between = answer.between, []
     if at and answer.sought.is_stricter(at.size, answer.build):
-        between = [f"{safe_size(at.size, answer.sought)} between these airs (interpolated: state RH {at.humidity:.2g})"]
+        size = safe_size(at.size, answer.sought)
+        between = [f"{size} between these airs (interpolated at RH {at.humidity:.2g}: compute it)"]
     return between + unasked(answer)
 
 
@@ -189,14 +199,14 @@ def _unless(stricter_size):
 
 
 def promise(answer: Answer) -> str:
-    """What the size to build promises."""
+    """What the size to build promises, after how many touchdowns."""
     shared = ", shared among its conditions," * bool(answer.stays)
-    after = f" after {grouped(answer.touchdowns)} touchdowns{shared}" * (answer.touchdowns > 1)
+    after = f"{grouped(answer.touchdowns)} touchdowns{shared}" if answer.touchdowns > 1 else "one touchdown"
     where = airs([air.humidity for air in answer.airs])
-    sentence = f"At most {one_in(answer.share)} sticks{after} {where} (95 % confidence, if the model holds)."
+    sentence = f"At most {one_in(answer.share)} sticks after {after} {where} (95 % confidence, if the model holds)."
     if answer.stuck is None or not answer.is_enough or answer.stuck.value <= answer.share:
         return sentence
-    return f"{sentence} In the other 5 % of all cases many can stick, so that more are expected on average."
+    return f"{sentence} On average more stick, as many do in the worst 5 % of cases."
 
 
 def contains(answer: Answer) -> str:
@@ -222,7 +232,7 @@ def decides(answer: Answer) -> str:
     stuck = "" if answer.sought.more_is_better else f", stuck by {'the ' if held != 'beam or tip' else ''}{held}"
     sentence = f"{_air(answer, last.humidity)}{_among_airs(answer)}{stuck}."
     if answer.between and answer.sought.is_stricter(answer.between.size, answer.build):
-        sentence += f" Between them, RH {answer.between.humidity:.2g} is worse."
+        sentence += f" Between these, RH {answer.between.humidity:.2g} is stricter (interpolated)."
     change = largest.factor - 1
     if not np.isfinite(change) or abs(change) < _SAME:
         return sentence
@@ -231,16 +241,13 @@ def decides(answer: Answer) -> str:
 
 
 def _among_airs(answer):
-    """How the air that decides in most draws compares with the other stated airs, each alone as the table has it."""
+    """How strict the air that decides is: another one can be stricter alone, but not in most draws of all of them."""
     if len(answer.airs) == 1:
         return ""
-    decides, sign = answer.stated_steps[-1].humidity, answer.sought.sign
-    build = next(air.build for air in answer.airs if air.humidity == decides)
-    stricter = [Air(air.humidity).words for air in answer.airs if sign * air.build < sign * build]
-    if not stricter:
-        return ", the worst of the stated airs"
-    alone = f"alone, {listed(stricter)} {'is' if len(stricter) == 1 else 'are'} stricter"
-    return f", in most draws of all stated airs together ({alone})"
+    sign = answer.sought.sign
+    build = next(air.build for air in answer.airs if air.humidity == answer.together.humidity)
+    often = any(sign * air.build < sign * build for air in answer.airs)
+    return f", {'most often ' * often}the strictest of the stated airs"
 
 
 def measure(answer: Answer) -> str:
@@ -271,17 +278,22 @@ def by_test_beams(answer: Answer) -> list[str]:
 
 
 def of_airs(answer: Answer) -> list[dict[str, str]]:
-    """Rows of the table of a first screen: size to build and P(stuck) in each stated air alone."""
-    rows, sought = [], answer.sought
+    """Rows of the table of a first screen: size to build and P(stuck) in each stated air alone.
+
+    The air that decides has those in all of them, as pictures and controls have: its own alone can be less safe.
+    """
+    rows, sought, together = [], answer.sought, answer.together
     after = f" after {grouped(answer.touchdowns)} touchdowns" * (answer.touchdowns > 1 and not answer.stays)
     for air in answer.airs:
-        row = {"RH": humidity_text(air.humidity)} | _celsius(answer, air)
+        decides = len(answer.airs) > 1 and air.humidity == together.humidity
+        shown = together if decides else air
+        row = {"RH": humidity_text(air.humidity) + " (decides)" * decides} | _celsius(answer, air)
         row |= {"touchdowns": f"{answer.touchdowns_in(air.humidity):.5g}"} if answer.stays else {}
-        row |= {f"{sought.name} to build [{sought.shown}]": _size(answer, air.build)}
+        row |= {f"{sought.name} to build [{sought.shown}]": _size(answer, shown.build)}
         if np.isfinite(air.without_tip):
             row["if the tip cannot touch [µm]"] = _size(answer, air.without_tip)
-        if air.stuck is not None:
-            row[f"P(stuck){after} at {answer.size / sought.scale:.4g} {sought.shown}"] = stuck_in_words(air.stuck)
+        if shown.stuck is not None:
+            row[f"P(stuck){after} at {answer.size / sought.scale:.4g} {sought.shown}"] = stuck_in_words(shown.stuck)
         rows.append(row)
     return rows
 

@@ -18,7 +18,7 @@ from stiction.plan.names import by_name
 from stiction.report.answer.tables import of_datasets
 from stiction.report.answer.words import is_forbidden, to_build_beside, unasked
 from stiction.report.budget.tables import choice_label, response_text
-from stiction.report.format import TO_UN, number, safe_size
+from stiction.report.format import TO_UN, bounding, number, safe_size
 from stiction.report.limits import words
 from stiction.report.style import (
     BUILD,
@@ -154,7 +154,7 @@ def _name_restoring_force(panel, restoring):
 
 
 def _force_over_humidity(panel, dataset, answer):
-    """Mean and 5 to 95 % of the pull-off force along the fine axis, its limit, the worst humid air, and what to build.
+    """Mean and 5 to 95 % of the pull-off force along the fine axis, its limit, the largest of both, and what to build.
 
     The forces to build are those of an answer, or unknown.
     """
@@ -180,7 +180,7 @@ def _force_over_humidity(panel, dataset, answer):
     if answer is not None:
         entries += _forces_to_build(panel, placed, answer)
     if not single.all():
-        label = f"worst {worst.choose(f'humidity {worst.humidity:.2f}', worst.where)}, by the mean"
+        label = f"largest mean, {worst.choose(f'RH {worst.humidity:.2f}', worst.where)}"
         entries += panel.plot([placed[worst.humidity]], [float(means.max())], "v", color="black", label=label)
     legend_below(panel, entries)
     panel.set(xlabel="relative humidity [–]", ylim=(0, None))
@@ -190,13 +190,14 @@ def _force_over_humidity(panel, dataset, answer):
 def _forces_to_build(panel, placed, answer):
     """Force to build in the air that decides, and the largest between the stated airs if it is stricter, for a legend.
 
-    Other stated airs alone would need less.
+    The latter is in the strictest air. Other stated airs alone would need less.
     """
     words, air = to_build_beside(answer, unasked(answer)), answer.together.humidity
     label = textwrap.fill(f"to build for all stated airs, {words}", _WIDE)
     entries = panel.plot(placed.get(air, air), TO_UN * answer.build, "D", color=BUILD, markersize=4, label=label)
     if between := answer.between:
-        label = f"between them, interpolated, RH {between.humidity:.2g}: {safe_size(between.size, answer.sought)}"
+        size = safe_size(between.size, answer.sought)
+        label = f"strictest air, RH {between.humidity:.2g}, interpolated: to build {size}"
         style = {"color": BUILD, "markersize": 5, "markerfacecolor": "white", "label": label}
         entries += panel.plot(between.humidity, TO_UN * between.size, "D", **style)
     return entries
@@ -218,7 +219,7 @@ def _limit_over_humidity(panel, dataset, placed, single):
     if not single.all():
         largest = int(np.argmax(np.where(single, -np.inf, limit)))
         entries = panel.plot(axis[~single], limit[~single], "--", label=text, **style)
-        label = f"its largest, RH {axis[largest]:.2f}: {limit[largest]:.3g} µN"
+        label = f"largest limit, RH {axis[largest]:.2f}: {bounding(float(limit[largest]), 3, up=True)} µN"
         entries += panel.plot(axis[largest], limit[largest], "^", color=_LIMIT, markersize=5, label=label)
     return entries
 

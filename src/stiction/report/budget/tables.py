@@ -67,7 +67,7 @@ def stoppers(
     errors: Mapping[str, xr.Dataset] | None = None,
     not_modelled: str = "",
 ) -> Table:
-    """Stoppers: pull-off force, P(stuck), restoring force needed, worst humidity. Everything is by device.
+    """Stoppers: pull-off force, P(stuck), force needed, humidity of the largest mean. Everything is by device.
 
     The caption ends with what is not in the model.
     """
@@ -153,7 +153,7 @@ def _humidities(humidity, lowest, highest):
 
 
 def worst_humidity(humidity: float, error: float, is_an_end: bool) -> str:
-    """Worst humidity as text, marked at an end of the computed humidities.
+    """Humidity of the largest mean force as text, marked at an end of the computed humidities.
 
     Examples
     --------
@@ -165,8 +165,11 @@ def worst_humidity(humidity: float, error: float, is_an_end: bool) -> str:
     return f"{humidity:g} or beyond" if is_an_end else with_error(humidity, error)
 
 
-_WORST_RH = Term("Worst RH", "humidity of the largest mean pull-off force along this axis.")
-_WORST = {"worst RH": (worst_humidity, "worst_humidity", "worst_humidity_se", "worst_is_an_end")}
+_WORST_RH = Term(
+    "RH of largest mean",
+    "humidity of the largest mean pull-off force along this axis. Rare places can hold most in other air.",
+)
+_WORST = {"RH of largest mean": (worst_humidity, "worst_humidity", "worst_humidity_se", "worst_is_an_end")}
 
 
 # Budget

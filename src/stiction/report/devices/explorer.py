@@ -17,7 +17,7 @@ from stiction.report.devices import levels
 from stiction.report.devices.curves import Curves
 from stiction.report.devices.grid import Grid, GridAxis
 from stiction.report.devices.levels import Simulated
-from stiction.report.format import UM, UN, bounding, safe_size
+from stiction.report.format import UM, UN, safe_size
 from stiction.stages.devices.stoppers import bounded_share
 
 #: Title of a view of a device in its own airs.
@@ -96,7 +96,7 @@ def beam_view(
         answer, joined.humidity.values, _simulated(joined, answer), _of_device_itself(joined, itself, answer)
     )
     build, sizes = layers.factor * joined.safe_length.values / UM, layers.sizes / UM
-    start = section.get("length_um", _rounded_down(answer.build / UM, float(np.nanmin(joined.safe_length)) / UM))
+    start = section.get("length_um", _start_length(answer, float(np.nanmin(joined.safe_length)) / UM))
     size = size_axis("length_um", "length", "µm", (build, sizes[0]), start)
     share = share_axis(joined.share.values, answer.share, "shares")
     shown = {"scores": layers.scores, "first": layers.first / UM}
@@ -111,11 +111,9 @@ def _all_airs(answer):
     return {"all_airs": f"{answer.together.humidity:g}"} if len(answer.airs) > 1 else {}
 
 
-def _rounded_down(build, otherwise):
-    """Length to build with four digits, not above it, or another one if none is known."""
-    if not np.isfinite(build):
-        return otherwise
-    return float(bounding(build, 4, up=False))
+def _start_length(answer, otherwise):
+    """Length to build as the first screen rounds it [µm], or another one if none is known."""
+    return answer.sought.safe(answer.build) if np.isfinite(answer.build) else otherwise
 
 
 def _simulated(dataset, answer):

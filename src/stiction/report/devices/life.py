@@ -235,7 +235,7 @@ def _on_dimples(answers):
     )
     text = (
         f"The {pulls.what} is at least {_low(pulls)} µN. A row is held by {_low(holds)} µN on average: "
-        f"{fraction_between(often.low, often.high, ' %')} of the beams stick on dimples in the worst of their air."
+        f"{fraction_between(often.low, often.high, ' %')} of the beams stick on dimples in the strictest of their airs."
     )
     if answers[Name.BESIDE].low > 0:
         tension = from_si(answers[Name.TENSION_BESIDE].low, "mN_per_m")
@@ -338,7 +338,7 @@ def _often(answers, touchdowns, has_shares):
     sought = SOUGHT[limit.unit]
     bounds = [f"{bound(limit)} {sought.shown}" for bound in (_low, _high)]
     others, same = reversed(bounds) if sought.more_is_better else bounds
-    where = ", all in the worst air," * has_shares
+    where = ", all in the strictest air," * has_shares
     number = f"For {touchdowns} touchdowns{where} {_SIMULATED[limit.unit][0]} {others}"
     return [f"{number} if each meets other summits, and {same} if all meet the same ones."]
 

@@ -58,9 +58,12 @@ _OF_MAPS = (
 _MISSING_EFFECTS = "this input does not act here, or too few of the simulated devices stick to show what it changes"
 #: What a ladder shows.
 _LADDER = (
-    "Each step adds one cause to those above it, in the air and end state that are then worst. From the error of the "
-    "simulation on, sizes hold with 95 % confidence. What is not stated stands beside and changes nothing. Lines: the "
-    "size to build, and yours (dotted)."
+    "Each row counts one cause more than the row above it, in the air and end state that are then the strictest. All "
+    "but the estimate have a confidence of 95 %. Lines: the size to build, and yours (dotted)."
+)
+_LADDER_TO_BUILD = (
+    "Build the size of the row marked so, which counts all that you stated, and none above it. A row that is not "
+    "stated has the size to build if this happened, too."
 )
 _NO_ERROR = "Not inside: the error of the model of the contact, which study full_contact computes."
 
@@ -97,7 +100,8 @@ def _steps(answer):
     if not answer.known_steps:
         return []
     ladder = tables_answer.steps(answer), figures_answer.ladder(answer)
-    return [Section("From the estimate to the answer", (_LADDER,), *ladder)]
+    text = (_LADDER,) if answer.forbidden else (_LADDER, _LADDER_TO_BUILD)
+    return [Section("From the estimate to the answer", text, *ladder)]
 
 
 def _words_of_budgets(budgets):

@@ -124,7 +124,7 @@ def _parts_of_stopper(name, section, data, answer):
     picture = figures_budget.stoppers({name: stopper}, {}, {name: answer})
     sections = [Section("By simulation alone", (_SIMULATED,), table, picture)]
     worst = [sentences.worst_sentence(stopper)] if ends(stopper) else []
-    texts_of_forces = [*sentences.safe_force_sentences(stopper), *worst]
+    texts_of_forces = [*sentences.safe_force_sentences(stopper, answer), *worst]
     words = terms()["stoppers"] | (terms()["probes"] if kind_of(section).shape else {})
     words |= terms()["worst_humidity"] if worst else {}
     return sections, texts_of_forces, texts(data["warnings"].patches[name]), words

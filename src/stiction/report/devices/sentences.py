@@ -13,7 +13,10 @@ from stiction.contact.air import is_humid
 from stiction.devices.limits import rules
 from stiction.devices.limits.limit import Limit
 from stiction.devices.risk import Basis, one_in, samples_for
-from stiction.report.format import UM, UN, airs, bounding, fraction_with_band, with_error
+from stiction.life.freeing import probability_for
+from stiction.report.answer.words import CAUSES
+from stiction.report.format import UM, UN, airs, bounding, fraction_with_band, listed, safe_size, with_error
+from stiction.rounding import grouped
 from stiction.stages.devices.opening import BEAMS, S_SHAPE
 from stiction.stages.devices.safe_lengths import chosen_share
 from stiction.stages.devices.stoppers import ends, in_any_air, is_at_an_end
@@ -78,6 +81,8 @@ def few_sentence(humidity: float, dataset: xr.Dataset) -> str:
     )
 
 
+#: Relative difference of fractions at one touchdown that are read as the same.
+_SAME = 0.01
 #: What a simulated limit of a force rests on.
 _ON = {
     Basis.SAMPLED: "95 % confidence",
@@ -86,20 +91,33 @@ _ON = {
 }
 
 
-def safe_force_sentences(stopper: xr.Dataset) -> list[str]:
+def safe_force_sentences(stopper: xr.Dataset, answer: Answer) -> list[str]:
     """Simulated restoring forces that suffice at the humidities of a stopper, and in any air of its fine axis.
 
-    For the shares that its patches can bound.
+    For the shares that its patches can bound. That of the answer at each touchdown stands beside the force to build.
     """
     stated = stopper.safe_force.sel(part="safe").max("humidity").assign_coords(basis=stopper.basis)
     where = "at all these humidities" if stopper.sizes["humidity"] > 1 else airs([float(stopper.humidity[0])])
     return [
         f"By simulation alone, {where}, a restoring force of {_needed(force)} leaves at most "
-        f"{one_in(float(force.share))} stuck ({_ON[str(force.basis.values)]})"
+        f"{one_in(float(force.share))} stuck at one touchdown ({_ON[str(force.basis.values)]})"
         + (f"; at any humidity{_range(stopper)}, {_needed(more)} are needed." if ends(stopper) else ".")
+        + _beside_the_force_to_build(float(force.share), answer)
         for force, more in zip(stated, in_any_air(stopper)[1], strict=True)
         if np.isfinite(force)
     ]
+
+
+def _beside_the_force_to_build(share, answer):
+    """How a simulated limit for a fraction at one touchdown differs from the force to build, if this allows as many."""
+    further = [CAUSES[cause][1] for cause in answer.included if cause not in (Cause.SIMULATION, Cause.TOUCHDOWNS)]
+    is_same = math.isclose(share, probability_for(answer.share, answer.touchdowns), rel_tol=_SAME)
+    if not is_same or answer.stays or answer.forbidden or not further or not np.isfinite(answer.build):
+        return ""
+    between = f" ({safe_size(answer.between.size, answer.sought)} between the stated airs)" if answer.between else ""
+    each = f" at each of {grouped(answer.touchdowns)} touchdowns" * (answer.touchdowns > 1)
+    build = f" The force to build, {safe_size(answer.build, answer.sought)}{between},"
+    return f"{build} allows the same {one_in(share)}{each}, and counts {listed(further)} as well."
 
 
 def _needed(force):
@@ -107,16 +125,16 @@ def _needed(force):
     return f"{bounding(float(force) / UN, 3, up=True)} µN"
 
 
-#: Reservation of the worst air by the mean.
-_RARE = "The few places that hold most can hold more in other air."
+#: Reservation of the air of the largest mean.
+_RARE = "The strictest air can be another one: the few places that hold most decide."
 
 
 def worst_sentence(stopper: xr.Dataset) -> str:
-    """Worst humidity of a stopper in words."""
+    """Humidity of the largest mean force on a stopper, and the largest fraction stuck, in words."""
     worst = float(stopper.worst_humidity)
     share, *band = in_any_air(stopper)[0]
     stuck = (
-        f" In the worst air of this range, {fraction_with_band(share, *band, ' %')} stick at one touchdown."
+        f" Where most stick in this range, {fraction_with_band(share, *band, ' %')} do at one touchdown."
         if share < 1
         else ""
     )

@@ -14,7 +14,7 @@ function opened(number) {
   const grid = data.grid;
   root.replaceChildren();
   const controls = [...grid.axes, grid.size, grid.share];
-  const MISSING = "\u2013", Z95 = 1.959963984540054, DIGITS = 4, STEPS = 400, POINTS = 120;
+  const MISSING = "\u2013", Z95 = 1.959963984540054, DIGITS = 4, SAFE_DIGITS = 3, STEPS = 400, POINTS = 120;
   const SAME = 2e-6; // relative difference of sizes that rounding makes
 
   // Formulas
@@ -175,13 +175,13 @@ function opened(number) {
   }
   const grouped = number => /^\d{5,}$/.test(number) ? number.replace(/\B(?=(\d{3})+$)/g, " ") : number;
 
-  /** Text of a bound with some digits, never below it if up, else never above. Two more digits are those of the page. */
-  function bounding(value, digits, up) {
+  /** Text of a bound with some digits, never below it if up, else never above. The page knows two more digits, or `known` ones. */
+  function bounding(value, digits, up, known = digits + 2) {
     if (!Number.isFinite(value) || !value) return text(value);
-    const [mantissa, power] = value.toExponential(digits + 1).split("e"), steps = Number(`${mantissa}e${digits - 1}`);
+    const [mantissa, power] = value.toExponential(known - 1).split("e"), steps = Number(`${mantissa}e${digits - 1}`);
     return text(Number(`${up ? Math.ceil(steps) : Math.floor(steps)}e${Number(power) + 1 - digits}`), digits);
   }
-  const safeText = size => bounding(size, DIGITS, grid.falls);
+  const safeText = size => bounding(size, SAFE_DIGITS, grid.falls, DIGITS + 2);
   const oneIn = share => `1 in ${grouped(text(1 / share))}`;
 
   /** Fraction in percent, or an end of a band, "low" or "high", rounded outwards, as in report/answer/words.py. */
@@ -196,7 +196,7 @@ function opened(number) {
 
   function stuckText({share, low, high, beyond}) {
     if (Number.isNaN(share)) return MISSING;
-    const [most, mean] = [percent(high, "high"), percent(share)], more = share > high && mean !== most ? ` (95 % confidence; many can in the other 5 % of all cases, ${mean} on average)` : "";
+    const [most, mean] = [percent(high, "high"), percent(share)], more = share > high && mean !== most ? ` (95 % confidence; ${mean} on average, as many stick in the worst 5 %)` : "";
     if (beyond < 0) return high > 0.999 ? "0 to 100 %" : `at most ${most}${more}`;
     if (low > 0.999) return percent(low);
     if (beyond) return `at least ${percent(low, "low")}`;
@@ -305,12 +305,15 @@ function opened(number) {
     };
   }
 
+  /** Note that a size to build is that for all airs: it is in the air that decides. */
+  const together = ({humidity}) => Number(data.words.all_airs) === humidity ? ", all airs together" : "";
+
   function texts() {
     const unit = grid.size.unit, words = data.words, levels = levelsOf(state);
     const safe = safeSize(state);
     return {
       stuck: `${words.stick}: ${stuckText(stuckAt(state[grid.size.key], levels))}`,
-      safe: `${words.safe} for ${oneIn(state.share)}${Number(words.all_airs) === state.humidity ? ", all airs together" : ""}: ${Number.isFinite(safe) ? `${safeText(safe)} ${unit}` : words.none ?? `not known from ${grid.samples} devices`}`,
+      safe: `${words.safe} for ${oneIn(state.share)}${together(state)}: ${Number.isFinite(safe) ? `${safeText(safe)} ${unit}` : words.none ?? `not known from ${grid.samples} devices`}`,
     };
   }
 
@@ -436,7 +439,7 @@ function opened(number) {
     const curve = make(chart.svg, "path", {class: "curve"}), marks = axis.values.map(() => make(chart.svg, "circle", {r: 3, class: "mark"}));
     const dot = make(chart.svg, "circle", {r: 6, class: "here"});
     const safe = value => safeSize({...state, [axis.key]: value});
-    const describe = value => `At ${valueText(axis, value)}: ${data.words.bound} ${safeText(safe(value))} ${unit}. Small dots: computed.${Number.isFinite(noise()) ? ` Band: error between them, ± ${text(100 * noise(), 2)} %.` : ""}`;
+    const describe = value => `At ${valueText(axis, value)}${together({...state, [axis.key]: value})}: ${data.words.bound} ${safeText(safe(value))} ${unit}. Small dots: computed.${Number.isFinite(noise()) ? ` Band: error between them, ± ${text(100 * noise(), 2)} %.` : ""}`;
     const caption = hover(chart, ends, value => describe(nearest(axis, value)), () => state[axis.key]);
     return () => {
       const points = axis.between ? spread(...ends).map(value => [value, safe(value)]) : [];
