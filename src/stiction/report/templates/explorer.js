@@ -382,7 +382,7 @@ function opened(number) {
       const {share: mean, low, high} = stuckAt(state[size.key], levels), above = points.some(([, stuck]) => stuck.share > stuck.high + SAME);
       if (Number.isFinite(mean)) make(chart.svg, "circle", {r: 6, class: "here", cx: chart.x(state[size.key]), cy: height(clamp(mean, low, high))});
       const dashed = Number.isFinite(bound) ? ` Dashed: ${data.words.bound} for ${oneIn(state.share)}.` : "";
-      const expected = `Line: expected${above ? ", above its band where many can stick in the other 5 % of all cases" : ""}. Band: 95 %.`;
+      const expected = `Line: expected${above ? ", above its band where many stick in the worst 5 %" : ""}. Band: 95 %.`;
       hover(chart, ends, value => `At ${text(value, DIGITS)} ${unit}: ${stuckText(stuckAt(value, levels))}. ${expected}${dashed}`, () => state[size.key])();
     };
   }
