@@ -132,18 +132,12 @@ full-contact-times: $(VENV)/ready
 attraction: $(VENV)/ready
 	$(STICTION) run $(or $(CONFIG),examples/attraction.yaml) --directory runs/attraction -- results/tables/variants.csv $(ARGS)
 
-# Table, page and errors of stiction estimate. Points that are there are not computed again.
-surrogate: export OPENBLAS_NUM_THREADS := 1
+# Table, page and errors of stiction estimate. All points are computed again only if the control numbers changed.
 surrogate: $(VENV)/ready
-	$(BIN)/python -m stiction.estimate.learning.training runs/surrogate
-	$(BIN)/python -m stiction.estimate.learning.patches runs/surrogate
-	$(BIN)/python -m stiction.estimate.learning.bridges runs/surrogate
-	$(BIN)/python -m stiction.estimate.learning.dry runs/surrogate
-	$(BIN)/python -m stiction.estimate.learning.dry_patches runs/surrogate
-	$(BIN)/python -m stiction.estimate.learning.dry_bridges runs/surrogate
-	$(BIN)/python -m stiction.estimate.learning.other_solids.ratios runs/surrogate
-	$(BIN)/python -m stiction.estimate.learning.other_solids.points runs/surrogate
-	$(BIN)/python -m stiction.estimate.learning.make runs/surrogate
+	mkdir -p runs/surrogate
+	$(BIN)/python -m stiction.estimate.learning.jobs.control runs/surrogate/control.json
+	$(BIN)/snakemake --snakefile workflow/surrogate.smk --directory runs/surrogate $(ARGS)
+	cp runs/surrogate/table.json src/stiction/estimate/table.json
 	$(BIN)/python -m stiction.estimate.page docs/_static/estimate.html
 	$(BIN)/python -m stiction.estimate.learning.held_out runs/surrogate docs/tables/safe_lengths.csv docs/tables/stoppers.csv \
 	  examples/devices.yaml docs/tables/drawn_safe_lengths.csv docs/tables/drawn_stoppers.csv examples/drawn_devices.yaml \

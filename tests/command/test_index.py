@@ -13,7 +13,7 @@ from test_front_page import finished
 from stiction.command import index, main
 from stiction.command.present import Present
 from stiction.config.files import load, paper
-from stiction.models import SIDES
+from stiction.models import BEAM_MODELS, MODELS_IN_WORDS, SIDES
 from stiction.plan.planner import Planner
 from stiction.run.provenance import record
 
@@ -117,6 +117,13 @@ def test_pairs_checks_warnings_provenance_and_changes_are_on_the_page(tmp_path):
         assert part in page
     sides = [paper()["pairs"][pair][side] for pair in ("b", "c") for side in SIDES]
     assert all(f"<dt>{name}</dt>" in page for name in sides)
+
+
+def test_every_model_that_checks_and_warnings_name_is_explained_and_the_table_says_which_it_counts(tmp_path):
+    (caption,) = (line for line in of_run(tmp_path).partition("<h2>Pairs</h2>")[2].split("<p>")[1:2])
+    assert "counted on non-Gaussian surfaces (model NG) alone" in caption
+    assert all(f"{model}, {words}" in caption for model, words in MODELS_IN_WORDS.items())
+    assert tuple(MODELS_IN_WORDS) == BEAM_MODELS
 
 
 def test_failed_checks_are_named_where_no_verdict_was_written(tmp_path):

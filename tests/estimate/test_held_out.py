@@ -10,9 +10,10 @@ import pytest
 from scipy.stats import binom
 
 from stiction.config.reading import read
-from stiction.estimate.answer import TO_USE, difficulty
+from stiction.estimate.answer import TO_USE, answer, difficulty
 from stiction.estimate.learning import errors as of_estimates
 from stiction.estimate.learning import held_out
+from stiction.estimate.length import NotLearnt
 from stiction.estimate.promise import kept
 from stiction.estimate.question import questions
 from stiction.estimate.table import content
@@ -131,6 +132,8 @@ def test_the_sizes_of_a_run_inside_the_intervals_are_counted(name):
     *rows, count, _ = [line for line in held_out.of_runs(*map(str, files)) if line] + [""]
     inside, beyond = [], []
     for row in (cells(line) for line in rows if re.match(r"\| [A-Z]\d \|", line)):
+        if row[-2] == "refused":
+            continue
         low, high = map(float, row[-1].split(" to "))
         size, unit = row[3].split()
         inside += [low <= float(size) <= high] if row[2] == "1000" else []
@@ -140,6 +143,24 @@ def test_the_sizes_of_a_run_inside_the_intervals_are_counted(name):
         f"and {sum(beyond)} of {len(beyond)} lie beyond the end to use."
     )
     assert 0 < sum(inside) < len(inside) + (name == ""), "control: some drawn devices are outside"
+
+
+def test_a_size_that_is_refused_is_shown_and_not_counted(monkeypatch):
+    whole = list(held_out.of_runs(LENGTHS, FORCES, DEVICES))
+
+    def refusing(question, *learnt):
+        """Answer about any device but the bridge."""
+        if question.name == "R1":
+            raise NotLearnt
+        return answer(question, *learnt)
+
+    monkeypatch.setattr(held_out, "answer", refusing)
+    rows = list(held_out.of_runs(LENGTHS, FORCES, DEVICES))
+    changed = [(cells(old), cells(new)) for old, new in zip(whole, rows, strict=True) if old != new]
+    assert len(changed) == 4, "three fractions and the count"
+    for old, new in changed[:3]:
+        assert new == [*old[:4], "refused", ""]
+    assert changed[3][1][0].startswith("At 1 in 1000, 6 of 6 sizes")
 
 
 def beyond_by_set():

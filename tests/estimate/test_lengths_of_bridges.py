@@ -20,8 +20,9 @@ from stiction.devices import bridges as of_devices
 from stiction.estimate import bridge
 from stiction.estimate.answer import answer
 from stiction.estimate.bridge import COORDINATES, Bridge, MiddleState, Stretched
-from stiction.estimate.learning import bridge_rows, bridges
+from stiction.estimate.learning import bridge_rows, bridges, patches
 from stiction.estimate.learning import errors as of_estimates
+from stiction.estimate.learning.files import save
 from stiction.estimate.learning.training import SETS
 from stiction.estimate.length import Lengths, NotLearnt
 from stiction.estimate.question import questions
@@ -250,6 +251,47 @@ def test_a_tested_length_is_that_of_bridges_in_full_contact(monkeypatch):
     assert one.error == pytest.approx(math.log(one.true / one.estimate))
 
 
+def test_the_weakest_tested_bridge_is_the_longest_over_that_on_flats(monkeypatch):
+    points = [(replace(POINT, width=width), numbers_of()) for width in (30.0, 20.0)]
+    monkeypatch.setattr(of_estimates, "with_changes", lambda *_: points)
+    longest = of_estimates.longest_tested(Path(), "decide", 164e9, MIDDLE, SAME)
+    assert longest == pytest.approx(math.exp(0.3))
+    monkeypatch.setattr(of_estimates, "lengths_of_bridges", refused_first())
+    assert of_estimates.longest_tested(Path(), "decide", 164e9, MIDDLE, SAME) == pytest.approx(
+        1e-4 / STATE.flooded_length
+    )
+
+
+def refused_first():
+    """Lengths of which the first are refused, and all others are 100 µm."""
+    called = []
+
+    def lengths(*_):
+        """Lengths, of the second call on."""
+        called.append(1)
+        if len(called) == 1:
+            raise NotLearnt
+        return Lengths((math.log(1e-4),) * 3, 0.1)
+
+    return lengths
+
+
+@pytest.mark.parametrize("over", [0.999, 1.001])
+def test_a_bridge_that_sticks_more_weakly_than_all_tested_ones_is_refused(over):
+    """Length over that on flooded flats, beside the largest that was tested."""
+    question, (table, *processes) = asked(), known()
+    heights, (air,) = question.surfaces[0] + question.surfaces[1], question.humidities
+    water = film(air, question.temperature, question.solids.wetting)
+    ratio = bridge.over_flooded(question._state(heights, water), question.lengths(heights, water, table))
+    assert ratio < table["bridges"]["longest"], "its own table knows this bridge"
+    other = table | {"bridges": table["bridges"] | {"longest": over * ratio}}
+    if over > 1:
+        assert answer(question, other, *processes).rows == found().rows
+    else:
+        with pytest.raises(NotLearnt, match="no bridge as long was tested"):
+            answer(question, other, *processes)
+
+
 # Training
 
 
@@ -287,14 +329,14 @@ class Strips:
 
 @pytest.mark.parametrize("ratio", [0.8, math.nan])
 def test_numbers_of_a_point_have_full_contact_where_the_set_has_it(monkeypatch, tmp_path, ratio):
-    (tmp_path / "learn_any").mkdir()
-    np.savez(tmp_path / "learn_any" / "0002.npz", ratio=0.9, power=1.0)
+    monkeypatch.chdir(tmp_path)
+    save(Path(patches.FOLDER) / "learn_any", 2, {"ratio": 0.9, "power": 1.0})
     monkeypatch.setattr(bridges, "plan_of", lambda *_: None)
     monkeypatch.setattr(bridges.TrainingStrips, "of", lambda *_: Strips())
     energy = SimpleNamespace(ratio=ratio, error=0.05, power=1.1)
     monkeypatch.setattr(bridges, "ratio_of_energies", lambda *_: energy)
     of = SETS["learn_any"]
-    with_it, without = (bridges.computed(replace(POINT, number=number), "learn_any", {}, tmp_path) for number in (2, 3))
+    with_it, without = (bridges.computed(replace(POINT, number=number), "learn_any", {}) for number in (2, 3))
     for each in (with_it, without):
         assert each["lengths"].shape == (of.states, of.patches)
         np.testing.assert_allclose(each["lengths"][:, 0], each["airs"][:, 0] + each["sizes"][:, 0], rtol=1e-6)

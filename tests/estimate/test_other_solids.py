@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -23,6 +24,7 @@ from stiction.estimate.force import reciprocals
 from stiction.estimate.learning import bridges, make, patches, training
 from stiction.estimate.learning import errors as of_estimates
 from stiction.estimate.learning.design import states
+from stiction.estimate.learning.files import save
 from stiction.estimate.learning.other_solids import points, ratios, rows
 from stiction.estimate.learning.other_solids.ratios import ALL, material_of
 from stiction.estimate.learning.rows import of_forces, patches_of, states_of
@@ -534,9 +536,8 @@ def saved(folder, exponents):
         numbers = own | dict(zip(ratios.KEYS, vars(changed).values(), strict=True))
         numbers |= {"slopes": factor * slopes, "forces": factor * forces, "lengths": np.array([factor * held[0], lost])}
         for part in ("", patches.FOLDER, bridges.FOLDER):
-            path = folder / (ratio.folder if ratio else "") / part / "learn_any" / "0000.npz"
-            path.parent.mkdir(parents=True)
-            training.save(numbers, path)
+            place = Path(ratio.folder, part) if ratio else Path(part or training.FOLDER)
+            save(folder / place / "learn_any", 0, numbers)
     return airs
 
 
@@ -571,12 +572,10 @@ def test_rows_of_a_ratio_have_the_change_of_their_own_contacts(tmp_path, ratio, 
 def test_a_tested_length_on_other_solids_is_that_of_its_changed_tips(tmp_path):
     name, point = "decide_any", points.SETS["decide_any"].all[0]
     folder = tmp_path / points.FOLDER / name
-    (tmp_path / points.FOLDER / patches.FOLDER / name).mkdir(parents=True)
-    folder.mkdir()
     temperature, materials = points.drawn(point, points.SETS[name].seed)
     humidity = points.humidity_of(temperature, materials, 3e-9)
     slopes = 0.05 * np.exp(0.1 * np.random.default_rng(1).normal(size=2000))
-    training.save({"humidity": np.array(humidity), "changed": slopes}, folder / "0000.npz")
+    save(folder, 0, {"humidity": np.array(humidity), "changed": slopes})
     processes = falling(1.0), None, process_of(at_0=-0.1, at_1=-0.1, at_2=-0.1)
     (one,) = rows.tested(tmp_path, name, -1.0, processes, as_polysilicon=False)
     assert one.true == pytest.approx(1.5 / np.quantile(slopes, 0.8413), rel=0.02)
@@ -589,7 +588,7 @@ def test_a_tested_length_on_other_solids_is_that_of_its_changed_tips(tmp_path):
     assert control.estimate != pytest.approx(one.estimate, rel=1e-3)
     numbers = {"humidity": np.array(humidity), "sides": np.array([2.0, 3.0]), "ratio": 0.8, "power": 1.0}
     numbers |= {"forces": 1e6 * np.exp(0.1 * np.random.default_rng(1).normal(size=(1, 2000)))}
-    training.save(numbers, tmp_path / points.FOLDER / patches.FOLDER / name / "0000.npz")
+    save(tmp_path / points.FOLDER / patches.FOLDER / name, 0, numbers)
     of_forces = falling(1.0), process_of(ratio=0.0, power=1.0), processes[2]
     (force,) = rows.tested_forces(tmp_path, name, -1.0, of_forces, as_polysilicon=False)
     assert 1 / force.true == pytest.approx(6e-12 * 0.8 * np.quantile(numbers["forces"], 0.8413), rel=0.02)

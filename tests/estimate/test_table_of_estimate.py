@@ -9,9 +9,9 @@ from stiction.estimate import dry as of_dry_air
 from stiction.estimate.answer import CONFIDENCES, TO_USE
 from stiction.estimate.bridge import COORDINATES as OF_BRIDGES
 from stiction.estimate.dry_bridge import COORDINATES as OF_DRY_BRIDGES
-from stiction.estimate.learning import dry, dry_bridges, dry_patches, training
+from stiction.estimate.learning import dry, dry_bridges, dry_patches
 from stiction.estimate.learning.design import FILMS, SurfaceLaw, points, states
-from stiction.estimate.learning.make import control_of_bridges, control_of_forces, control_of_patches, control_of_slopes
+from stiction.estimate.learning.jobs import control
 from stiction.estimate.page import page
 from stiction.estimate.state import COORDINATES, OF_PATCHES
 from stiction.estimate.table import FILE, Surrogate, content, process
@@ -23,9 +23,7 @@ AGAIN = "tips, patches or bridges have changed since the estimate was learnt: ru
 
 def test_tips_patches_and_bridges_are_still_those_that_were_learnt():
     with without_progress():
-        slopes = control_of_slopes()
-        pressures = control_of_patches()
-        held = control_of_bridges()
+        slopes, pressures, held = control.slopes(), control.of_patches(), control.of_bridges()
     np.testing.assert_allclose(slopes, content()["control"]["slopes"], rtol=1e-4, err_msg=AGAIN)
     np.testing.assert_allclose(pressures, content()["control"]["patches"], rtol=1e-4, err_msg=AGAIN)
     np.testing.assert_allclose(held, content()["control"]["bridges"], rtol=1e-4, err_msg=AGAIN)
@@ -41,7 +39,7 @@ def test_contacts_in_dry_air_are_still_those_that_were_learnt():
 @pytest.mark.slow
 def test_full_contact_is_still_the_one_that_was_learnt():
     with without_progress():
-        forces = control_of_forces()
+        forces = control.forces()
     np.testing.assert_allclose(forces, content()["control"]["forces"], rtol=1e-3, err_msg=AGAIN)
 
 
@@ -81,15 +79,3 @@ def test_films_of_a_point_are_within_their_range_and_its_own():
     assert np.all((films >= 1e-9 * FILMS[0]) & (films <= 1e-9 * FILMS[1]))
     np.testing.assert_array_equal(films, states(8, 3, 1)[:, 0])
     assert not np.any(films == states(8, 4, 1)[:, 0])
-
-
-def test_training_goes_on_where_it_was(tmp_path):
-    done = []
-
-    def compute(point, *_):
-        """Numbers of a point, which is noted."""
-        return done.append(point.number) or {"airs": np.zeros(1)}
-
-    for chosen in (range(2), range(1, 4), range(4)):
-        training.train(tmp_path / "check_typical", training.SETS["check_typical"].all, chosen, {}, compute)
-    assert done == [0, 1, 2, 3]

@@ -18,7 +18,7 @@ FILLED = {
     "front.html": lambda: html.rendered(
         "front.html", **dict.fromkeys(["subjects", "checks", "changes"], HOSTILE),
         **dict.fromkeys(["answers", "opened", "warnings", "provenance"], [HOSTILE]),
-        pairs=[{HOSTILE: HOSTILE}], length=1,
+        pairs=[{HOSTILE: HOSTILE}], length=1, models={"NG": HOSTILE},
     ),
 }  # fmt: skip
 

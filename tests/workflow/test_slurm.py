@@ -15,6 +15,7 @@ import sys
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 from conftest import ROOT, SMOKE, datasets, snakemake
 
@@ -181,13 +182,14 @@ class Cluster:
         if jobs:
             self.command("scancel", *jobs)
 
-    def snakemake(self, directory, configs, *arguments, targets=TARGETS):
+    def snakemake(self, directory, configs, *arguments, targets=TARGETS, rules="Snakefile"):
         """Start Snakemake on the cluster, in a process group of its own."""
-        command = [sys.executable, "-m", "snakemake", "--snakefile", ROOT / "Snakefile", "--directory", directory]
+        command = [sys.executable, "-m", "snakemake", "--snakefile", ROOT / rules, "--directory", directory]
         command += ["--workflow-profile", ROOT / "profiles" / "slurm", "--latency-wait", 5, "--jobs", 4]
         command += ["--slurm-status-command", "squeue", "--slurm-init-seconds-before-status-checks", 2]
         command += ["--default-resources", "slurm_partition=main", "mem_mb=500", "runtime=10", *arguments]
-        command += ["--configfile", ROOT / "config.yaml", *configs, "--", *targets]
+        command += ["--configfile", ROOT / "config.yaml", *configs] if configs else []
+        command += ["--", *targets]
         with (directory / "run.log").open("a") as log:
             return subprocess.Popen(
                 list(map(str, command)),
@@ -239,6 +241,15 @@ def finished(run, folder, patience=2 * PATIENCE):
     log = (folder / "run.log").read_text()
     assert status == 0, f"snakemake ended with {status}:\n{log[-6000:]}"
     return log
+
+
+def test_points_of_the_estimate_are_jobs_of_a_cluster(cluster, tmp_path):
+    (tmp_path / "control.json").write_text("{}")
+    run = cluster.snakemake(tmp_path, [], targets=["bridges/control/0000"], rules="workflow/surrogate.smk")
+    finished(run, tmp_path)
+    assert [job[-1] for job in cluster.jobs("COMPLETED") if "points" in job[-1]] != []
+    with np.load(tmp_path / "bridges/control/0000/0000.npz") as bridges:
+        assert np.isfinite(bridges["lengths"]).all()
 
 
 @pytest.mark.parametrize("target", ["table_3", pytest.param("all", marks=pytest.mark.nightly)])

@@ -14,6 +14,7 @@ import yaml
 from stiction.command.present import Present
 from stiction.config.merging import differing
 from stiction.config.reading import paper
+from stiction.models import MODELS_IN_WORDS
 from stiction.report.format import humidity_text, with_error
 from stiction.report.html import rendered
 from stiction.run.markdown import plain
@@ -43,6 +44,7 @@ def front_page(folder: Path) -> str:
         answers=list(answers(results, config)),
         pairs=pairs(results) if config["run"]["pairs"] else [],
         length=config["beam"]["length_um"],
+        models=MODELS_IN_WORDS,
         opened=_first_results(results, config),
         checks=results.text("verdict.txt").strip() if config["run"]["pairs"] else None,
         warnings=list(warnings(results, config)),
@@ -97,9 +99,9 @@ def ends(row: Mapping[str, str]) -> dict[str, str]:
     return {
         "pair": row["pair"],
         "RH": humidity_text(float(row["relative_humidity"])),
-        "stuck behind a crack [%]": stuck,
+        "stuck behind a crack (S-shape) [%]": stuck,
         "crack [µm]": with_error(*crack),
-        "stuck at the tip alone [%]": arcs,
+        "stuck at the tip alone (arc) [%]": arcs,
     }
 
 

@@ -167,6 +167,14 @@ def lengths(state: MiddleState, middle: Surrogate, full: Surrogate, *changes: Su
     return changed(summits, change["shift"], change["power"])
 
 
+def over_flooded(state: MiddleState, found: Lengths) -> float:
+    """Length that few bridges stick at over that on flooded flats, the larger the weaker they stick [-].
+
+    Where they stick weakly, most come free of two cracks at any length, and nothing is tested beyond some ratio.
+    """
+    return math.exp(found.logarithms[-1]) / state.flooded_length
+
+
 def changed(summits: Lengths, shift: float, power: float) -> Lengths:
     """Lengths by full contact, from the shift of the logarithm of their median and the power of their scatter."""
     median = summits.logarithms[0]
@@ -236,8 +244,13 @@ class Bridge(Asked):
 
     def lengths(self, heights: Heights, water: Film, table: Mapping[str, Any], *_tips: Surrogate | None) -> Lengths:
         """Lengths without stress that are held as well as those that its middle holds, on the sum of two surfaces."""
-        self._refuse(table["bridges"]["ranges"])
-        return lengths(self._state(heights, water), *processes(table["bridges"], "middle", "full"))
+        learnt = table["bridges"]
+        self._refuse(learnt["ranges"])
+        state = self._state(heights, water)
+        found = lengths(state, *processes(learnt, "middle", "full"))
+        if over_flooded(state, found) > learnt["longest"]:
+            raise NotLearnt("it sticks so weakly that no bridge as long was tested")
+        return found
 
     def _state(self, heights, water):
         """State on the sum of two surfaces in a film."""

@@ -226,7 +226,10 @@ function lengthsOfBridge(state, closed, bridges) {
   const place = ofMiddle(state, closed), {shift, power} = known(bridges.full, place, bridges.coordinates);
   const values = onSolids(bridges.middle, state.besideWater, place, bridges);
   const {logarithms, slope} = falling(values, Math.log(floodedLength(state))), [median] = logarithms;
-  return {logarithms: logarithms.map((each) => median + shift + power * (each - median)), slope: power * slope};
+  const found = {logarithms: logarithms.map((each) => median + shift + power * (each - median)), slope: power * slope};
+  const isUntested = Math.exp(found.logarithms[2]) / floodedLength(state) > bridges.longest;
+  if (isUntested) throw new NotLearnt("it sticks so weakly that no bridge as long was tested");
+  return found;
 }
 function pullOff(state, stoppers) {
   const [low, high] = stoppers.sides.map((side) => (side * 1e-6) ** 2), middle = middleOf(state);

@@ -2,15 +2,20 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import chain, pairwise
+from operator import itemgetter
 
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from stiction.report.style import OUTLINED, PUBLISHED
 
 #: Height of a row of dots, of each further line of its label, and of everything else in a panel [in].
 ROW, LINE, AROUND = 0.24, 0.13, 0.75
+#: Least space between the texts of two rows, and height of a figure with room for all texts of a layout [in].
+_APART, _SPARE = 0.04, 20.0
 #: Widths of the bar of a mark and of its ends [points].
 _THICK, _END = 3.5, 7
 #: Distance of a number from its mark, and width of one of its characters [in]. Part of a figure that its panels fill,
@@ -53,7 +58,7 @@ def draw(panel: Axes, rows: Mapping[str, Sequence[Mark]], *, column: str | None 
             else:
                 at, style = (mark.high + mark.error, row), {"color": mark.text_color, "bbox": _GROUND}
                 panel.annotate(mark.text, at, (6, 0), **_NUMBER, **style)
-    panel.set_yticks(range(len(rows)), list(rows))
+    panel.set_yticks(range(len(rows)), list(rows), linespacing=1)
     panel.tick_params(axis="y", length=0)
     panel.set_ylim(len(rows) - 0.4, -0.6 - bool(column))
     if column:
@@ -75,6 +80,35 @@ def height(labels: Iterable[str]) -> float:
     """Height of a panel with rows of some labels, broken into lines [in]."""
     lines = [label.count("\n") for label in labels]
     return AROUND + len(lines) * (ROW + LINE * max(lines, default=0))
+
+
+def heighten(figure: Figure, panels: Sequence[Axes]) -> None:
+    """Make panels below each other so high that labels and numbers of neighbouring rows are apart.
+
+    All that is around panels, such as a title of many lines and a legend, keeps its height. No panel gets lower.
+    """
+    before, grid = figure.get_figheight(), panels[0].get_gridspec()
+    figure.set_figheight(before + _SPARE)  # whatever is around panels leaves them room
+    figure.draw_without_rendering()
+    heights = np.array([panel.bbox.height for panel in panels]) / figure.dpi
+    without = heights - _SPARE * heights / heights.sum()
+    needed = np.maximum(heights - [_spare(panel) for panel in panels], without)
+    figure.set_figheight(before + (needed - without).sum())
+    grid.set_height_ratios(needed)
+
+
+def _spare(panel):
+    """Height that rows of a panel can lose until labels, or numbers, of neighbouring ones are just apart [in]."""
+    labels = [(tick.get_loc(), tick.label1) for tick in panel.yaxis.get_major_ticks()]
+    numbers = [(text.xy[1], text) for text in panel.texts if text.get_text()]
+    gaps = chain.from_iterable(map(_gaps, (labels, numbers)))
+    return (min(gaps, default=np.inf) / panel.figure.dpi - _APART) * abs(np.subtract(*panel.get_ylim()))
+
+
+def _gaps(texts):
+    """Distances of neighbouring texts by the place of their row, over the number of rows between them [pixels]."""
+    shown = [(row, text.get_window_extent()) for row, text in sorted(texts, key=itemgetter(0))]
+    return [(upper.y0 - lower.y1) / (below - row) for (row, upper), (below, lower) in pairwise(shown) if below > row]
 
 
 def signed(number: float) -> str:

@@ -18,6 +18,7 @@ from stiction.devices.stoppers import stuck_patches
 from stiction.plan.plan import Plan
 from stiction.report.budget import figures as figures_budget
 from stiction.report.budget import tables as tables_budget
+from stiction.report.devices import pages
 from stiction.report.format import safe_size
 from stiction.report.style import BUILD, DOUBLE, humidity_colours, legend_below, panels, save, styled
 from stiction.stages.devices.stoppers import Settings, layout, stuck_over
@@ -51,6 +52,28 @@ def test_the_total_has_the_correlations_and_leaves_out_scatter_and_choices():
     assert_allclose(totals[tables_budget.INDEPENDENT], 100 * np.sqrt(8e-4 + 0.64e-4), rtol=1e-12)
     assert_allclose(part(frame, "scatter").effect_percent.iloc[0], 100 * 10 / 700, rtol=1e-9)
     assert_allclose(part(frame, "choice").effect_percent["van_der_waals_dry"], -4.2, rtol=1e-12)
+
+
+def test_the_total_of_a_page_is_the_root_of_the_squares_above_it_and_has_no_rival():
+    whole, cells = tables_budget.budget(BUDGETS), tables_budget.cells_of_page(BUDGETS)
+    rivals = whole.cells.what.str.contains("without correlations")
+    assert rivals.sum() == len(BUDGETS)
+    assert whole.cells[~rivals].reset_index(drop=True).equals(cells)
+    of_one = cells[(cells.device == "C1") & (cells.RH == "0.67") & (cells["held by"] == "beam")]
+    rows = of_one.set_index("what")["effect [%]"].map(lambda text: float(text.split()[0]))
+    totals = [name for name in rows.index if name.startswith("total")]
+    assert totals == ["total: all measurements together"]
+    above = rows.iloc[: rows.index.get_loc(totals[0])]
+    assert rows[totals[0]] == pytest.approx(np.hypot(*above), rel=0.01)
+    assert list(rows.index).index("scatter between devices, not in the total") == len(above) + 1
+
+
+@pytest.mark.parametrize("device", ["C1", "S1"])
+def test_what_holds_a_device_has_a_column_of_its_page_if_it_is_several_things(device):
+    budgets = {key: dataset for key, dataset in BUDGETS.items() if key[0] == device}
+    cells = pages._side_by_side(tables_budget.cells_of_page(budgets))  # noqa: SLF001
+    assert cells.columns[0] == "what"
+    assert ("held by" in cells) == (device == "C1")
 
 
 def test_what_remains_is_the_rest_of_the_total():
@@ -170,7 +193,7 @@ def test_bars_of_a_budget_are_shares_of_the_variance_and_total_and_scatter_are_a
     assert_allclose(np.reshape(middles, (2, 2)).mean(axis=1), range(2), atol=1e-12)
     totals = [f"{100 * scale * np.sqrt(heights + thickness):.2g}" for scale in (2, 1)]
     title = " ".join(measured.get_title(loc="left").replace("\u00a0", " ").split())
-    assert title.endswith(f"standard uncertainty ± {totals[0]}, {totals[1]} % devices scatter ± 1.4, 1.4 %")
+    assert title.endswith(f"total: standard uncertainty ± {totals[0]}, {totals[1]} % devices scatter ± 1.4, 1.4 %")
     (alone,) = (panel for panel in figures_budget.budget({("C1", 0.67): BEAMS["C1", 0.67]}).axes[:1])
     assert f"standard uncertainty ± {totals[1]} %" in alone.get_title(loc="left").replace("\u00a0", " "), (
         "a single air has no name"
@@ -185,7 +208,7 @@ def test_bars_of_a_budget_are_shares_of_the_variance_and_total_and_scatter_are_a
 
 def test_beam_and_tip_have_panels_of_their_own():
     figure = figures_budget.budget(BEAMS | {("C1", rh, "tip"): budget_dataset(0.5, TIPS) for rh in (0.44, 0.67)})
-    titles = [panel.get_title(loc="left").partition("\nstandard")[0].replace("\n", " ") for panel in figure.axes]
+    titles = [panel.get_title(loc="left").partition("\ntotal: standard")[0].replace("\n", " ") for panel in figure.axes]
     assert titles[::2] == [
         "(a) mean length at which beams stick (S-shape)",
         "(c) length that 1 in 1000 tips hold (arc)",

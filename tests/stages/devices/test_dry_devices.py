@@ -365,7 +365,9 @@ def test_a_budget_has_bars_of_zero_length_for_what_dry_air_does_not_have():
     assert rows["thickness"][0][1] == pytest.approx(100), "dry air has no other input"
     assert rows["thickness"][1][1] == pytest.approx(100 - rows["heights of B2"][1][1])
     assert figures_budget._choices({0.0: dry, 0.67: humid})["van der Waals in dry gaps"][0] == (0.0, 0.0, 0.0)  # noqa: SLF001
-    cells = pages._side_by_side(tables_budget.budget({("C1", 0.0): dry, ("C1", 0.67): humid}).cells)  # noqa: SLF001
+    cells = pages._side_by_side(tables_budget.cells_of_page({("C1", 0.0): dry, ("C1", 0.67): humid}))  # noqa: SLF001
+    assert cells.columns[0] == "what"
+    assert "held by" not in cells, "all the same"
     assert "dry: effect [%]" in cells
     assert "–" in set(cells["dry: effect [%]"])
 

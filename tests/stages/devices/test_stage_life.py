@@ -1,6 +1,7 @@
 """The life of devices: each answer is that of its form, in the right units, and the parts agree with each other."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pandas as pd
@@ -22,13 +23,12 @@ from stiction.devices.stoppers import safe_force
 from stiction.life import drying, freeing, holding, touch
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
-from stiction.report import html
 from stiction.report.answer import words
 from stiction.report.devices import life as report
 from stiction.report.devices.pages import Page, Section, with_life
 from stiction.report.format import safe_size
 from stiction.report.page import Summary
-from stiction.report.style import save
+from stiction.report.style import on_a_page, save, strips
 from stiction.run import storage
 from stiction.stages.answer.beside import unasked
 from stiction.stages.life.answers import QUESTIONS, Name, answers_of, layout
@@ -467,6 +467,23 @@ def test_the_figure_has_a_row_for_every_length_between_its_label_and_its_number(
     assert not covering(figure)
 
 
+@pytest.mark.parametrize("height", [1.8, 9.0])
+def test_the_rows_on_a_page_are_apart_also_where_their_height_is_underestimated(found, monkeypatch, height):
+    """A page breaks labels into many lines, and its legend has an entry a line."""
+
+    def closest():
+        with on_a_page():
+            figure = report.figure({"C1": found["C1"]}, {"C1": None})
+        strips(figure)  # lays it out
+        labels = [label.get_window_extent() for label in figure.axes[0].get_yticklabels()]
+        return min((upper.y0 - lower.y1) / figure.dpi for upper, lower in pairwise(labels))
+
+    monkeypatch.setattr(report.dots, "height", lambda labels: height)
+    assert closest() > 0.03
+    monkeypatch.setattr(report.dots, "heighten", lambda figure, panels: None)
+    assert (closest() < 0) == (height < 2), "a control: they are not by themselves"
+
+
 @pytest.mark.parametrize("factor", [0.99, 1.01])
 def test_limits_that_do_not_allow_the_size_to_build_are_red(found, factor):
     """A length is too small below the size to build, a force too large above it."""
@@ -522,8 +539,7 @@ def test_a_page_says_the_life_and_shows_all_answers(found):
         assert summary.basis[1:] == report.judged_without(answer)
         assert any("if water dries on it" in sentence for sentence in summary.basis) == is_named
     assert [section.title for section in shown.sections] == ["First", "From the first contact to the last", "Last"]
-    assert list(shown.sections[1].cells)[6:] == ["form", "source"]
-    style = (html.TEMPLATES / "style.css").read_text(encoding="utf-8")
-    assert f'[aria-label$="{shown.sections[1].title}"] :is(td, th):nth-child(n + 7)' in style, "left out on phones"
+    on_a_phone = ["what", "at least", "at most", "±", "unit"]
+    assert list(shown.sections[1].cells) == [*on_a_phone, "question", "form", "source"]
     assert len(shown.sections[1].cells) == found["C1"].sizes["answer"]
     assert "does not touch below" in shown.html

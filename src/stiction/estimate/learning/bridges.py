@@ -1,16 +1,12 @@
 """Bridges of the design: lengths that their middle holds, on summits and changed by full contact as a run does it.
 
 As `stiction.estimate.learning.training`, whose surfaces and air they have, and after
-`stiction.estimate.learning.patches`, which have the change of largest attractions:
-
-    python -m stiction.estimate.learning.bridges FOLDER [SET ...]
+`stiction.estimate.learning.patches`, which have the change of largest attractions.
 """
 
 import math
-import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -29,7 +25,8 @@ from stiction.errors import NotConverged
 from stiction.estimate.learning import patches
 from stiction.estimate.learning.design import RANGES as OF_ALL
 from stiction.estimate.learning.design import Point, SurfaceLaw, states
-from stiction.estimate.learning.training import HUMIDITIES, PAIR, SETS, air_of, surfaces_of, train, water_of
+from stiction.estimate.learning.files import numbers_of
+from stiction.estimate.learning.training import HUMIDITIES, PAIR, SETS, air_of, surfaces_of, water_of
 from stiction.plan.plan import Plan
 from stiction.plan.stage import At
 from stiction.stages.contact import contact, full_energy
@@ -161,8 +158,8 @@ def correction_of(energy: levels.Ratio, of_patches: Mapping[str, Any], height: f
     return Correction(np.array([air_of(height, 1.0, water.temperature)[0]]), *in_air, nearest=True)
 
 
-def computed(point: Point, name: str, valid: dict[str, Any], of_patches: Path) -> dict[str, Any]:
-    """Numbers of one point of a set, beside the sets of the patches."""
+def computed(point: Point, name: str, valid: dict[str, Any]) -> dict[str, Any]:
+    """Numbers of one point of a set, with those of its patch, which are in the working directory."""
     effort, plan, sizes = SETS[name], plan_of(point, valid), sizes_of(point, name)
     airs = states(effort.states, point.number, effort.seed)
     strips = TrainingStrips.of(point, plan, STRIPS, effort.seed)
@@ -172,15 +169,9 @@ def computed(point: Point, name: str, valid: dict[str, Any], of_patches: Path) -
     if point.number % effort.every == 0:
         energy = ratio_of_energies(point, plan, airs[0, 0], effort.seed)
         results |= {"ratio": energy.ratio, "ratio_error": energy.error, "power": energy.power}
-        with np.load(of_patches / name / f"{point.number:04}.npz") as patch:
-            change = correction_of(energy, patch, airs[0, 0], strips.water)
+        of_patch = numbers_of(Path(patches.FOLDER) / name, point.number)
+        change = correction_of(energy, of_patch, airs[0, 0], strips.water)
         if np.isfinite([change.energy.ratio, change.pull_off.ratio]).all():
             changed = strips.lengths(airs[0, 0], sizes[0], effort.patches, change)
             results["changed"] = changed.astype(np.float32)
     return results
-
-
-if __name__ == "__main__":
-    trained, compute = Path(sys.argv[1]), partial(computed, of_patches=Path(sys.argv[1]) / patches.FOLDER)
-    for each in sys.argv[2:] or SETS:
-        train(trained / FOLDER, each, range(0, SETS[each].points, EVERY.get(each, 1)), base(), compute)

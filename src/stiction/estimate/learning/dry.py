@@ -1,14 +1,10 @@
 """Contacts of the design in dry air: slopes up to which tips stick, on summits and changed by full contact as in a run.
 
-As `stiction.estimate.learning.training`, whose surfaces and beams they have, for some Hamaker constants:
-
-    python -m stiction.estimate.learning.dry FOLDER [SET [FIRST LAST]]
+As `stiction.estimate.learning.training`, whose surfaces and beams they have, for some Hamaker constants.
 """
 
 import math
-import sys
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -29,7 +25,6 @@ from stiction.estimate.learning.training import (
     PAIR,
     TrainingEffort,
     TrainingTips,
-    main,
     surfaces_of,
     water_of,
     with_materials,
@@ -171,7 +166,3 @@ def control() -> dict[str, list[float]]:
     (point,), name = SETS["control"].all, "control"
     numbers = computed(point, name, base())
     return {key: numbers[key].ravel().tolist() for key in ("slopes", "full")}
-
-
-if __name__ == "__main__":
-    main(base(), computed, Path(sys.argv[1]) / FOLDER, SETS, *sys.argv[2:])

@@ -1,14 +1,10 @@
 """Bridges of the design in dry air: lengths that their middle holds, changed by full contact as a run does it.
 
 As `stiction.estimate.learning.dry_patches`, whose surfaces, solids and full contact they have, with sizes of bridges as
-in humid air:
-
-    python -m stiction.estimate.learning.dry_bridges FOLDER [SET [FIRST LAST]]
+in humid air.
 """
 
-import sys
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -20,7 +16,6 @@ from stiction.contact.correction import Correction, ElasticChange
 from stiction.estimate.learning import bridges, dry, dry_patches
 from stiction.estimate.learning.bridges import STRIPS, TrainingStrips, sizes_of
 from stiction.estimate.learning.design import Point
-from stiction.estimate.learning.training import main
 from stiction.stages.contact import full_contact
 
 #: Folder of the bridges beside the sets of the tips.
@@ -60,7 +55,3 @@ def control() -> dict[str, list[float]]:
     """Lengths of a few bridges, as `stiction.estimate.learning.dry.control`."""
     (point,), name = SETS["control"].all, "control"
     return {"lengths": computed(point, name, bridges.base([DRY]))["lengths"].ravel().tolist()}
-
-
-if __name__ == "__main__":
-    main(bridges.base([DRY]), computed, Path(sys.argv[1]) / FOLDER, SETS, *sys.argv[2:])

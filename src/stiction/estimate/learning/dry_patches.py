@@ -1,13 +1,9 @@
 """Patches of the design in dry air: pull-off forces of stoppers on summits, and their change by full contact.
 
-As `stiction.estimate.learning.dry`, whose surfaces and Hamaker constants they have, with sides as in humid air:
-
-    python -m stiction.estimate.learning.dry_patches FOLDER [SET [FIRST LAST]]
+As `stiction.estimate.learning.dry`, whose surfaces and Hamaker constants they have, with sides as in humid air.
 """
 
-import sys
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -21,7 +17,7 @@ from stiction.contact.air import DRY, DRY_AIR
 from stiction.errors import NotConverged
 from stiction.estimate.learning import dry, patches
 from stiction.estimate.learning.design import Point
-from stiction.estimate.learning.training import PAIR, main, surfaces_of, water_of
+from stiction.estimate.learning.training import PAIR, surfaces_of, water_of
 from stiction.plan.plan import Plan
 from stiction.plan.stage import At
 from stiction.stages.contact import contact, curves, full_contact
@@ -99,7 +95,3 @@ def control() -> dict[str, list[float]]:
     (point,), name = SETS["control"].all, "control"
     numbers = computed(point, name, base())
     return {"forces": numbers["forces"].ravel().tolist(), "ratio": [numbers["ratio"]]}
-
-
-if __name__ == "__main__":
-    main(base(), computed, Path(sys.argv[1]) / FOLDER, SETS, *sys.argv[2:])

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,15 +13,17 @@ from scipy.special import betaincinv
 from stiction.devices.risk import CONFIDENCE
 from stiction.estimate.answer import CONFIDENCES, TO_USE, difficulty
 from stiction.estimate.bridge import lengths as lengths_of_bridges
+from stiction.estimate.bridge import over_flooded
 from stiction.estimate.force import reciprocals
+from stiction.estimate.learning import patches, training
 from stiction.estimate.learning.bridge_rows import TAIL, of_middle, with_changes
 from stiction.estimate.learning.bridge_rows import states_of as states_of_bridges
 from stiction.estimate.learning.design import Point
-from stiction.estimate.learning.patches import FOLDER
 from stiction.estimate.learning.rows import change_of, of_forces, of_tips, patches_of, states_of, stored
 from stiction.estimate.learning.training import FACTORS, changes_of
 from stiction.estimate.length import NAMES, Lengths, NotLearnt, lengths
 from stiction.estimate.promise import kept
+from stiction.estimate.state import PatchState, TipState
 from stiction.estimate.table import Surrogate
 from stiction.streams import stream
 
@@ -56,24 +59,32 @@ class Tested:
 Processes = Callable[[Point], tuple[Surrogate, Surrogate]]
 
 
+def settled_tips(folder: Path, sets: str, modulus: float) -> Iterator[tuple[Point, TipState, Lengths]]:
+    """Tips of some sets in their first air, with their lengths over the gap by the full contact that settles."""
+    for point, numbers in stored(folder / training.FOLDER, sets):
+        if "changed" in numbers and np.isfinite(numbers["changed"]).all():
+            state = states_of(point, numbers["airs"][:1], modulus)[0][FACTORS.index(1.0)]
+            yield point, state, lengths_of(of_tips(numbers["changed"]), math.log(1.5))
+
+
+def settled_patches(folder: Path, sets: str, modulus: float) -> Iterator[tuple[Point, PatchState, Lengths]]:
+    """Patches of some sets in their first air, with the reciprocals of their forces [N⁻¹], as `settled_tips`."""
+    for point, numbers in stored(folder / patches.FOLDER, sets):
+        if np.isfinite(numbers.get("ratio", np.nan)):
+            patch, pressures = patches_of(point, numbers, modulus)[0], numbers["forces"][0].astype(float)
+            changed = change_of(numbers).of(pressures)(pressures)
+            yield point, patch, lengths_of(of_forces(changed, patch), -math.log(patch.flooded_force))
+
+
 def tested(folder: Path, sets: str, modulus: float, score: float, processes: Processes) -> Iterator[Tested]:
     """Lengths of some sets at a normal score up to -2, in the first air, by the full contact that settles."""
-    for point, numbers in stored(folder, sets):
-        if "changed" not in numbers or not np.isfinite(numbers["changed"]).all():
-            continue
-        state = states_of(point, numbers["airs"][:1], modulus)[0][FACTORS.index(1.0)]
-        true = lengths_of(of_tips(numbers["changed"]), math.log(1.5))
+    for point, state, true in settled_tips(folder, sets, modulus):
         yield beside(point, true, score, lambda state=state, at=point: lengths(state, 1.0, *processes(at)))
 
 
 def tested_forces(folder: Path, sets: str, modulus: float, score: float, processes: Processes) -> Iterator[Tested]:
     """Reciprocals of forces of some sets, as `tested`."""
-    for point, numbers in stored(folder / FOLDER, sets):
-        if not np.isfinite(numbers.get("ratio", np.nan)):
-            continue
-        patch, pressures = patches_of(point, numbers, modulus)[0], numbers["forces"][0].astype(float)
-        changed = change_of(numbers).of(pressures)(pressures)
-        true = lengths_of(of_forces(changed, patch), -math.log(patch.flooded_force))
+    for point, patch, true in settled_patches(folder, sets, modulus):
         yield beside(point, true, score, lambda patch=patch, at=point: reciprocals(patch, *processes(at)))
 
 
@@ -83,6 +94,16 @@ def tested_bridges(folder: Path, sets: str, modulus: float, score: float, proces
         state, *_ = states_of_bridges(point, numbers, modulus)
         true = lengths_of(of_middle(state, numbers["changed"]), math.log(state.flooded_length))
         yield beside(point, true, score, lambda state=state, at=point: lengths_of_bridges(state, *processes(at)))
+
+
+def longest_tested(folder: Path, sets: str, modulus: float, *processes: Surrogate) -> float:
+    """Largest of `stiction.estimate.bridge.over_flooded` of the bridges of some sets that are tested."""
+    ratios = []
+    for point, numbers in with_changes(folder, sets, TAIL):
+        state, *_ = states_of_bridges(point, numbers, modulus)
+        with suppress(NotLearnt):
+            ratios.append(over_flooded(state, lengths_of_bridges(state, *processes)))
+    return max(ratios)
 
 
 def beside(point: Point, true: Lengths, score: float, estimate: Callable[[], Lengths]) -> Tested:
@@ -163,7 +184,7 @@ def noise_of(folder: Path, sets: str, score: float) -> np.ndarray:
     Of all points of some sets whose full contact settles. By the bootstrap: B. Efron, Ann. Stat. 7, 1 (1979).
     """
     errors, rng = [], stream(0, "estimate", "bootstrap")
-    for _, numbers in stored(folder, sets):
+    for _, numbers in stored(folder / training.FOLDER, sets):
         if "changed" in numbers and np.isfinite(numbers["changed"]).all():
             errors.append((_noise_of_strips(numbers, score, rng), _noise_of_tips(numbers["changed"], score, rng)))
     return np.array(errors)

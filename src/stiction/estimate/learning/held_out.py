@@ -17,7 +17,7 @@ from stiction.config.reading import read
 from stiction.config.units import from_si
 from stiction.contact.air import Air
 from stiction.estimate.answer import CHOSEN, CONFIDENCES, MARGINS, OF_OTHER_SOLIDS, TO_USE, answer, difficulty
-from stiction.estimate.learning import dry_bridges, dry_rows
+from stiction.estimate.learning import by_rms, dry_bridges, dry_rows
 from stiction.estimate.learning.design import SurfaceLaw
 from stiction.estimate.learning.dry import CONSTANTS, DryEffort
 from stiction.estimate.learning.errors import (
@@ -91,6 +91,12 @@ _BRIDGES_IN_DRY_AIR = (
     "Lengths of bridges in dry air, by the closed form with the pull-off pressure of the estimate of stoppers. A "
     "factor is learnt from {} points, without bridges that come free of two cracks:"
 )
+_OF_RMS = (
+    "Cantilevers and stoppers in humid air once more, with only the rms of both sides stated. The estimate takes "
+    "the rest from the typical surfaces, and errors are beside their mean. The end to use makes the same promise:"
+)
+#: Devices of whose surfaces the rms alone is stated, by their kind in words.
+_BY_RMS = (("length", by_rms.lengths), ("force", by_rms.forces))
 _FORCES_IN_DRY_AIR = "Forces in dry air, beside patches changed by {} strips of 3 µm in full contact:"
 
 
@@ -103,6 +109,7 @@ def lines(folder: Path) -> Iterator[str]:
     yield from (_OTHER_BRIDGES, "")
     yield from _beyond([row for _, rows in tables for row in rows if row.is_checked])
     yield from _of_noise(folder, table["tested_score"])
+    yield from _of_rms(folder)
 
 
 def _of_polysilicon(folder, table):
@@ -169,6 +176,27 @@ def _beyond(rows):
         yield ""
 
 
+def _of_rms(folder):
+    """Lines of the table of devices of whose surfaces the rms alone is stated."""
+    found = {
+        (kind, name): list(devices(folder, name)) for kind, devices in _BY_RMS for name in SETS if _is_checked(name)
+    }
+    if any(found.values()):
+        yield from (_OF_RMS, "", f"| size {_HEAD.rpartition('| inside')[0]}|", f"|---{_RULE.removesuffix('---|')}")
+        yield from (_line_by_rms(kind, SETS[name], devices) for (kind, name), devices in found.items() if devices)
+        yield ""
+
+
+def _line_by_rms(kind, words, devices):
+    """Row of the table of a kind of devices on some surfaces."""
+    answered = [device for device in devices if device.estimate]
+    errors = np.array([device.error for device in answered])
+    numbers = np.mean(errors), np.sqrt(np.mean(errors**2)), np.median([device.half for device in answered])
+    cells = [kind, words, len(devices), len(devices) - len(answered), *(f"{100 * number:.1f}" for number in numbers)]
+    cells += [_counted(np.array([getattr(each, key) for each in answered])) for key in ("is_beyond", "is_inside")]
+    return f"| {' | '.join(map(str, cells))} |"
+
+
 def _of_noise(folder, score):
     """Lines about the parts of the errors of lengths that are noise of the run."""
     if len(noise := noise_of(folder, f"decide_{SurfaceLaw.TYPICAL}", score)):
@@ -200,7 +228,7 @@ def of_runs(lengths: str, forces: str, devices: str) -> Iterator[str]:
     yield "|---|---|---|---|---|---|"
     rows = list(_rows(lengths, forces, asked))
     yield from (row.line for row in rows)
-    chosen = [row for row in rows if row.share == CHOSEN]
+    chosen = [row for row in rows if row.share == CHOSEN and row.is_known]
     inside, beyond = (sum(each) for each in zip(*((row.is_inside, row.is_beyond) for row in chosen), strict=True))
     yield ""
     yield (
@@ -215,8 +243,9 @@ class RowBesideRun(NamedTuple):
 
     line: str
     share: float
-    is_inside: bool  #: whether the size of the run is in the interval of 90 %
-    is_beyond: bool  #: whether it is beyond the end to use
+    is_known: bool = False  #: whether the estimate does not refuse
+    is_inside: bool = False  #: whether the size of the run is in the interval of 90 %
+    is_beyond: bool = False  #: whether it is beyond the end to use
 
 
 def _rows(lengths, forces, asked):
@@ -246,16 +275,18 @@ def _read(path):
 def _beside(row, share, of_run, question):
     """Row of one length or force of a run, in the unit of the question."""
     humidity = float(row["relative_humidity"])
-    once = replace(question, touchdowns=1, humidities=(humidity,))
-    estimate = answer(once, *known())
+    once, cells = replace(question, touchdowns=1, humidities=(humidity,)), [row["device"], Air(humidity).name]
+    cells += [f"{1 / share:.0f}", f"{_three_digits(of_run)} {_WORDS[question.unit]}"]
+    try:
+        estimate = answer(once, *known())
+    except NotLearnt:
+        return RowBesideRun(f"| {' | '.join([*cells, 'refused', ''])} |", share)
     estimated = next(each for each in estimate.rows if np.isclose(each.fraction, share))
     low, high = (from_si(end, question.unit) for end in estimated.intervals["90"])
     size = _three_digits(from_si(estimated.size, question.unit))
-    cells = [row["device"], f"{Air(humidity).name}", f"{1 / share:.0f}"]
-    cells += [f"{_three_digits(of_run)} {_WORDS[question.unit]}", size]
     ends = f"{bounding(low, 3, up=False)} to {bounding(high, 3, up=True)}"
     is_beyond = of_run > high if estimate.is_force else of_run < low
-    return RowBesideRun(f"| {' | '.join([*cells, ends])} |", share, low <= of_run <= high, is_beyond)
+    return RowBesideRun(f"| {' | '.join([*cells, size, ends])} |", share, True, low <= of_run <= high, is_beyond)
 
 
 def _three_digits(number):

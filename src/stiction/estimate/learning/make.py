@@ -1,6 +1,6 @@
 """Table of the estimate from a trained design, and its errors on surfaces that were not learnt.
 
-python -m stiction.estimate.learning.make FOLDER
+python -m stiction.estimate.learning.make FOLDER TABLE.json
 """
 
 import json
@@ -9,8 +9,6 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from stiction.config.reading import paper
 from stiction.config.units import to_si
 from stiction.constants import WATER_MOLAR_VOLUME, WATER_SURFACE_ENERGY
@@ -18,15 +16,22 @@ from stiction.estimate import dry as of_dry_air
 from stiction.estimate.answer import CHOSEN, OF_OTHER_SOLIDS
 from stiction.estimate.bridge import COORDINATES as OF_BRIDGES
 from stiction.estimate.dry_bridge import COORDINATES as OF_DRY_BRIDGES
-from stiction.estimate.learning import dry, dry_bridges, dry_patches, dry_rows, patches
+from stiction.estimate.learning import dry, dry_rows
 from stiction.estimate.learning.bridge_rows import rows_of_changes, rows_of_middles
-from stiction.estimate.learning.bridges import EVERY, TrainingStrips, sizes_of
+from stiction.estimate.learning.bridges import EVERY
 from stiction.estimate.learning.bridges import RANGES as RANGES_OF_BRIDGES
-from stiction.estimate.learning.bridges import base as base_of_bridges
-from stiction.estimate.learning.bridges import plan_of as plan_of_bridge
-from stiction.estimate.learning.design import FILMS, SurfaceLaw
 from stiction.estimate.learning.design import SIDES as SIDES_OF_PATCHES
-from stiction.estimate.learning.errors import Tested, margins_of, rest_of, scores, tested, tested_bridges, tested_forces
+from stiction.estimate.learning.design import SurfaceLaw
+from stiction.estimate.learning.errors import (
+    Tested,
+    longest_tested,
+    margins_of,
+    rest_of,
+    scores,
+    tested,
+    tested_bridges,
+    tested_forces,
+)
 from stiction.estimate.learning.fit import Fitted, everywhere, fitted, group, rounded
 from stiction.estimate.learning.other_solids import rows as of_solids
 from stiction.estimate.learning.other_solids.ratios import ALL
@@ -39,10 +44,10 @@ from stiction.estimate.learning.rows import (
     rows_of_ratios,
     rows_of_tips,
 )
-from stiction.estimate.learning.training import SETS, TrainingTips, air_of, base, full_contact_of, plan_of, water_of
+from stiction.estimate.learning.training import SETS
 from stiction.estimate.length import normal_score
 from stiction.estimate.state import COORDINATES, OF_PATCHES
-from stiction.estimate.table import CHANGES, FILE, Surrogate, processes
+from stiction.estimate.table import CHANGES, Surrogate, processes
 from stiction.models import SIDES
 from stiction.progress import without_progress
 from stiction.run.atomic import save_text
@@ -79,9 +84,12 @@ def table_of(folder: Path) -> dict[str, Any]:
     table |= errors_of(tested, folder, modulus, tips, full)
     for section, margins in margins_of_other_solids(folder, table).items():
         (table[section] if section else table)[OF_OTHER_SOLIDS] = margins
-    control = {"slopes": control_of_slopes(), "forces": control_of_forces(), "patches": control_of_patches()}
-    control["bridges"] = control_of_bridges()
-    return table | {"control": control}
+    return table | {"control": _control(folder, "humid")}
+
+
+def _control(folder, air):
+    """Numbers in an air by which a test sees that contacts are still those that were learnt."""
+    return json.loads((folder / "control.json").read_text(encoding="utf-8"))[air]
 
 
 def in_dry_air(folder: Path, modulus: float) -> dict[str, Any]:
@@ -100,7 +108,7 @@ def in_dry_air(folder: Path, modulus: float) -> dict[str, Any]:
         "full": full.content,
         "stoppers": stoppers,
         "bridges": bridges,
-        "control": dry.control() | dry_patches.control() | dry_bridges.control(),
+        "control": _control(folder, "dry"),
     }
     return section | errors_of(dry_rows.tested, folder, modulus, tips, full)
 
@@ -140,45 +148,10 @@ def bridges_of(folder: Path, modulus: float) -> dict[str, Any]:
         "coordinates": OF_BRIDGES,
         "middle": middle.content,
         "full": full.content,
+        "longest": longest_tested(folder, "decide", modulus, *(Surrogate(**each.content) for each in (middle, full))),
     }
     section |= changes_of(of_solids.rows_of_bridges, folder, modulus)
     return section | errors_of(tested_bridges, folder, modulus, middle, full)
-
-
-def _control_point():
-    """Point of the control numbers, its plan, and its film."""
-    (point,) = SETS["control"].all
-    return point, plan_of(point, base()), to_si(FILMS[0], "nm")
-
-
-def control_of_slopes() -> list[float]:
-    """Slopes of a few tips, by which a test sees that contacts are still those that were learnt."""
-    point, plan, height = _control_point()
-    return TrainingTips.of(point, plan, SETS["control"].tips, SETS["control"].seed).slopes(height, 1.0).ravel().tolist()
-
-
-def control_of_forces() -> list[float]:
-    """Forces of one tip in full contact at three slopes, as `control_of_slopes`."""
-    point, plan, height = _control_point()
-    humidity, _ = air_of(height, 1.0, water_of(plan).temperature)
-    return full_contact_of(point, plan, humidity, SETS["control"])["full"].ravel().tolist()
-
-
-def control_of_patches() -> list[float]:
-    """Pull-off pressures of a few patches, as `control_of_slopes`."""
-    point, _, height = _control_point()
-    effort = SETS["control"]
-    sides = patches.sides_of(point, effort.seed, effort.law)
-    plan = patches.plan_of(point, sides, patches.base())
-    return patches.forces_of(point, plan, np.array([height]), effort.patches, effort.seed)[0].tolist()
-
-
-def control_of_bridges() -> list[float]:
-    """Lengths of a few bridges on few strips, as `control_of_slopes`."""
-    point, _, height = _control_point()
-    effort = SETS["control"]
-    strips = TrainingStrips.of(point, plan_of_bridge(point, base_of_bridges()), 10 * effort.patches, effort.seed)
-    return strips.lengths(height, sizes_of(point, "control")[0], effort.patches).tolist()
 
 
 #: Errors of all surfaces of some sets, as `stiction.estimate.learning.errors.tested`.
@@ -249,4 +222,4 @@ def _growth(test, folder, section, first):
 if __name__ == "__main__":
     with without_progress():
         content = table_of(Path(sys.argv[1]))
-    save_text(json.dumps(rounded(content), separators=(",", ":")) + "\n", FILE)
+    save_text(json.dumps(rounded(content), separators=(",", ":")) + "\n", Path(sys.argv[2]))

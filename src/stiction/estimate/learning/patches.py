@@ -1,15 +1,11 @@
 """Patches of the design: pull-off forces of stoppers on summits, and the change of their mean by full contact.
 
-As `stiction.estimate.learning.training`, whose surfaces and air they have:
-
-    python -m stiction.estimate.learning.patches FOLDER [SET [FIRST LAST]]
+As `stiction.estimate.learning.training`, whose surfaces and air they have.
 """
 
 import math
-import sys
 from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -20,7 +16,7 @@ from stiction.config.units import in_si, to_si
 from stiction.contact.full.effort import TooLong
 from stiction.errors import NotConverged
 from stiction.estimate.learning.design import SIDES, Point, SurfaceLaw, states
-from stiction.estimate.learning.training import HUMIDITIES, PAIR, SETS, air_of, main, surfaces_of, water_of
+from stiction.estimate.learning.training import HUMIDITIES, PAIR, SETS, air_of, surfaces_of, water_of
 from stiction.plan.plan import Plan
 from stiction.plan.stage import At
 from stiction.stages.contact import contact, curves, full_energy
@@ -111,7 +107,3 @@ def computed(point: Point, name: str, valid: dict[str, Any]) -> dict[str, Any]:
     if point.number % effort.every == 0:
         results |= change_of(point, plan, airs[0, 0], effort.seed)
     return results
-
-
-if __name__ == "__main__":
-    main(base(), computed, Path(sys.argv[1]) / FOLDER, SETS, *sys.argv[2:])

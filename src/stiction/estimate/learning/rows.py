@@ -12,9 +12,10 @@ from stiction.config.units import to_si
 from stiction.constants import WATER_SURFACE_ENERGY
 from stiction.contact.correction import ElasticChange
 from stiction.devices.tail import fit_tail
+from stiction.estimate.learning import patches, training
 from stiction.estimate.learning.design import Point
+from stiction.estimate.learning.files import numbers_of, path_of
 from stiction.estimate.learning.fit import DesignRows
-from stiction.estimate.learning.patches import FOLDER
 from stiction.estimate.learning.training import FACTORS, SETS, TrainingEffort
 from stiction.estimate.length import NAMES, SCORES
 from stiction.estimate.state import Film, PatchState, TipState
@@ -32,9 +33,8 @@ def stored(
     """Points of all sets of a purpose that are computed, with their numbers, each under a number of its own."""
     for k, (name, effort) in enumerate(sets.items()):
         for point in effort.all if name.startswith(start) else ():
-            if (file := folder / name / f"{point.number:04}.npz").exists():
-                with np.load(file) as numbers:
-                    yield replace(point, number=_SET * k + point.number), dict(numbers)
+            if path_of(folder / name, point.number).exists():
+                yield replace(point, number=_SET * k + point.number), numbers_of(folder / name, point.number)
 
 
 def states_of(point: Point, airs: np.ndarray, modulus: float) -> list[list[TipState]]:
@@ -77,7 +77,7 @@ def rows_of_tips(folder: Path, name: str, modulus: float) -> DesignRows:
     """Rows of all tips of a set on summits."""
     return rows_of(
         (point.number, state.coordinates, of_beam / state.flooded_slope)
-        for point, numbers in stored(folder, name)
+        for point, numbers in stored(folder / training.FOLDER, name)
         for states, slopes in zip(states_of(point, numbers["airs"], modulus), numbers["slopes"], strict=True)
         for state, of_beam in zip(states, slopes, strict=True)
     )
@@ -93,7 +93,7 @@ def rows_of_full(folder: Path, name: str, modulus: float) -> DesignRows:
     Their noise is in proportion to the scatter on summits, of which there are more strips.
     """
     coordinates, values, surface, noise = [], [], [], []
-    for point, numbers in stored(folder, name):
+    for point, numbers in stored(folder / training.FOLDER, name):
         if "slope" not in numbers or not np.isfinite(numbers["full"]).all():
             continue
         film = states_of(point, numbers["airs"], modulus)[0][1].film
@@ -131,7 +131,7 @@ def rows_of_patches(folder: Path, name: str, modulus: float) -> DesignRows:
     """Rows of all patches of a set on summits."""
     return rows_of(
         (point.number, patch.coordinates, _relative(pressures, patch))
-        for point, numbers in stored(folder / FOLDER, name)
+        for point, numbers in stored(folder / patches.FOLDER, name)
         for patch, pressures in zip(patches_of(point, numbers, modulus), numbers["forces"], strict=True)
     )
 
@@ -142,7 +142,7 @@ OF_RATIO = (0, 1, 2, 4, 7)
 
 def rows_of_ratios(folder: Path, name: str, modulus: float) -> DesignRows:
     """Rows of the logarithm of the ratio, and of the power, of the change of pull-off forces by full contact."""
-    settled = [(p, n) for p, n in stored(folder / FOLDER, name) if np.isfinite(n.get("ratio", np.nan))]
+    settled = [(p, n) for p, n in stored(folder / patches.FOLDER, name) if np.isfinite(n.get("ratio", np.nan))]
     coordinates = np.array([patches_of(*point_and_numbers, modulus)[0].coordinates for point_and_numbers in settled])
     values = {name: np.array([float(numbers[name]) for _, numbers in settled]) for name in ("ratio", "ratio_error")}
     changes = {

@@ -1,14 +1,6 @@
-"""Contacts of the design: slopes up to which tips stick, and full contact that changes some of them as a run does.
+"""Contacts of the design: slopes up to which tips stick, and full contact that changes some of them as a run does."""
 
-Every point is a file, so that a stopped run goes on where it was:
-
-    python -m stiction.estimate.learning.training FOLDER [SET [FIRST LAST]]
-"""
-
-import sys
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -26,8 +18,6 @@ from stiction.estimate.learning.design import Point, SurfaceLaw, points, states
 from stiction.pilot import surface
 from stiction.plan.plan import Plan
 from stiction.plan.stage import At
-from stiction.progress import without_progress
-from stiction.run.atomic import replacing
 from stiction.stages.contact import contact, curves, tips_in_full_contact
 from stiction.stages.contact.changes.patches import TIPS
 from stiction.stages.contact.pair_model_error import POWER_ERROR
@@ -35,6 +25,8 @@ from stiction.stages.contact.pairs import Settings
 from stiction.stages.devices.contact_names import patch_of_tips
 from stiction.stages.devices.opening import DesignedBeam, section_of_beam
 
+#: Folder of the points.
+FOLDER = "tips"
 #: Names of pair and device of every point.
 PAIR, DEVICE = "p", "D"
 #: Thickness of the beams [µm]: the estimate knows E t³ / h² alone.
@@ -199,41 +191,3 @@ def computed(point: Point, name: str, valid: dict[str, Any]) -> dict[str, Any]:
         changed = tips.slopes(*airs[0], changes_of(**of_full))[FACTORS.index(1.0)]
         results |= of_full | {"changed": changed.astype(np.float32)}
     return results
-
-
-#: Numbers of one point of a set, from a valid configuration.
-Computed = Callable[[Point, str, dict[str, Any]], dict[str, Any]]
-
-
-def train(folder: Path, all_points: list[Point], chosen: range, valid: dict[str, Any], compute: Computed) -> None:
-    """Compute all missing points of a set among the chosen ones."""
-    name = folder.name
-    for point in all_points:
-        target = folder / f"{point.number:04}.npz"
-        if point.number in chosen and not target.exists():
-            with without_progress():
-                save(compute(point, name, valid), target)
-
-
-def save(numbers: dict[str, Any], target: Path) -> None:
-    """Save arrays in one file, whole or not at all."""
-    with replacing(target) as path, path.open("wb") as file:
-        np.savez(file, **numbers)
-
-
-def main(
-    valid: dict[str, Any],
-    compute: Computed,
-    folder: Path,
-    sets: Mapping[str, TrainingEffort],
-    name: str = "",
-    *ends: str,
-) -> None:
-    """Compute all sets, or some points of one."""
-    for each in [name] if name else sets:
-        chosen = range(*map(int, ends)) if ends else range(sets[each].points)
-        train(folder / each, sets[each].all, chosen, valid, compute)
-
-
-if __name__ == "__main__":
-    main(base(), computed, Path(sys.argv[1]), SETS, *sys.argv[2:])

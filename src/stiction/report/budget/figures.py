@@ -270,7 +270,7 @@ def _in_words(cases):
     budgets = [budget_of(dataset) for dataset in cases.values()]
     totals = [budget.effect(budget.names) for budget in budgets]
     for name, numbers in (
-        ("standard uncertainty", totals),
+        ("total: standard uncertainty", totals),
         ("devices scatter", [float(dataset.scatter) for dataset in cases.values()]),
     ):
         texts = [number(100 * deviation, "#.2g").rstrip(".") for deviation in numbers]

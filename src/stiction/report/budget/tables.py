@@ -25,6 +25,12 @@ from stiction.stages.devices.stoppers import ends, in_any_air, is_at_an_end, sha
 
 #: Rows of a budget below those of its measurements.
 TOTAL, INDEPENDENT, SCATTER = "total", "total, if all errors were independent", "scatter between devices"
+#: These rows for readers.
+_ROWS = {
+    TOTAL: "total: all measurements together",
+    INDEPENDENT: "for comparison: total without correlations",
+    SCATTER: f"{SCATTER}, not in the total",
+}
 #: Parts that are the error of the model: computed at a humidity, or interpolated.
 MODEL = ("model", "model, interpolated")
 #: Other choices of the model in words for those who design.
@@ -176,13 +182,7 @@ def budget(budgets: Mapping[tuple, xr.Dataset], errors: Mapping[str, xr.Dataset]
     measurement, with a sentence on what to measure better.
     The budgets are by device, humidity and, for those of tips, ``tip``; the errors of the model by device.
     """
-    frame = pd.DataFrame(
-        [
-            row
-            for (device, rh, *_), dataset in budgets.items()
-            for row in [*_budget_rows(device, rh, dataset), *_model_rows(device, rh, dataset, errors)]
-        ]
-    )
+    frame = _frame(budgets, errors)
     sentences = [
         f"{device}, {Air(humidity).words}: {what_to_measure(dataset)}"
         for (device, humidity, *_), dataset in budgets.items()
@@ -201,10 +201,37 @@ def budget(budgets: Mapping[tuple, xr.Dataset], errors: Mapping[str, xr.Dataset]
             "the uncertainty left if the measurement were exact. Scatter between devices and other choices of the "
             "model, with the sign of their effect, are no part of the total.",
         ),
+        Term(
+            "Total",
+            "the uncertainty by all measurements together. Answers count errors in this way: quantities of one "
+            "measurement, such as rms and skewness, are correlated. The total without correlations is no part of them.",
+        ),
         *([column.caption(errors)] if errors else []),
         *map(Line, [*sentences, *omitted]),
     ]
-    return Table(frame, shows, as_text(frame[~frame.part.isin(["input", "member"])], _BUDGET))
+    return Table(frame, shows, _cells(frame))
+
+
+def cells_of_page(budgets: Mapping[tuple, xr.Dataset], errors: Mapping[str, xr.Dataset] | None = None) -> pd.DataFrame:
+    """Text of the budgets of one device, as in its table, without the total that is for comparison alone."""
+    frame = _frame(budgets, errors)
+    return _cells(frame[frame.name != INDEPENDENT])
+
+
+def _frame(budgets, errors):
+    """Numbers of all budgets, and of the errors of the model."""
+    return pd.DataFrame(
+        [
+            row
+            for (device, rh, *_), dataset in budgets.items()
+            for row in [*_budget_rows(device, rh, dataset), *_model_rows(device, rh, dataset, errors)]
+        ]
+    )
+
+
+def _cells(frame):
+    """Rows of measurements and all below them for reading."""
+    return as_text(frame[~frame.part.isin(["input", "member"])], _BUDGET)
 
 
 def what_to_measure(dataset: xr.Dataset) -> str:
@@ -284,7 +311,11 @@ def _effect_as_text(share, effect, error):
 
 _BUDGET = DEVICE | {
     "held by": (str, "held_by"),
-    "what": (lambda share, name: f"choice: {choice_label(name)}" if share == "choice" else name, "part", "name"),
+    "what": (
+        lambda share, name: f"choice: {choice_label(name)}" if share == "choice" else _ROWS.get(name, name),
+        "part",
+        "name",
+    ),
     "effect [%]": (_effect_as_text, "part", "effect_percent", "effect_se_percent"),
     "remaining [%]": (".2g", "remaining_percent"),
 }

@@ -386,6 +386,7 @@ def figure(life: Mapping[str, xr.Dataset], answers: Mapping[str, Answer | None])
     letter(axes[:, 0], titles)
     entries = list(_entries([mark for of_device in marks.values() for row in of_device.values() for mark in row]))
     legend_outside(figure_of_lives, (entries, [entry.get_label() for entry in entries]), "lower", 2)
+    dots.heighten(figure_of_lives, axes[:, 0])
     return figure_of_lives
 
 

@@ -166,7 +166,7 @@ def _sure(name, budgets, errors):
         for (humidity, *_), budget in budgets.items()
     ]
     sentences.append(tables_budget.counted_as_exact(*budgets.values()))
-    cells, drawn = _side_by_side(tables_budget.budget(cases, errors).cells), figures_budget.budget(cases)
+    cells, drawn = _side_by_side(tables_budget.cells_of_page(cases, errors)), figures_budget.budget(cases)
     return [Section("Uncertainty, and what should be measured better", sentences, cells, drawn, _MISSING_EFFECTS)]
 
 
@@ -201,9 +201,13 @@ def _how_rough(name, roughness):
 
 
 def _side_by_side(cells):
-    """Cells of the budget of one device with a pair of columns for every humidity."""
+    """Cells of the budget of one device with a pair of columns for every humidity.
+
+    What holds the device has no column if it is one thing alone.
+    """
+    keys = ["what", *(["held by"] if cells["held by"].nunique() > 1 else [])]
     shown = [
-        effects.set_index(["held by", "what"])[["effect [%]", "remaining [%]"]].add_prefix(
+        effects.set_index(keys)[["effect [%]", "remaining [%]"]].add_prefix(
             f"{text if text == DRY else f'RH {text}'}: "
         )
         for text, effects in cells.groupby("RH", sort=False)
@@ -274,7 +278,7 @@ def with_life(page: Page, name: str, answers: xr.Dataset, answer: Answer) -> Pag
     The first screen names what does not allow the size to build.
     """
     first, *others = page.sections
-    cells = life.table({name: answers}).cells.drop(columns="device")
+    cells = _numbers_first(life.table({name: answers}).cells.drop(columns="device"))
     build = np.nan if answer.forbidden else answer.build
     picture = life.figure({name: answers}, {name: None if answer.forbidden else answer})
     section = Section("From the first contact to the last", (life.CAPTION,), cells, picture)
@@ -283,6 +287,12 @@ def with_life(page: Page, name: str, answers: xr.Dataset, answer: Answer) -> Pag
     return replace(
         page, answer=[*sentences, *page.answer], more=[*sentences, *page.more], sections=sections, summary=summary
     )
+
+
+def _numbers_first(cells):
+    """Cells of a life with what a row is about and its numbers before all else, for narrow pages."""
+    later = ["question", "form", "source"]
+    return cells[[*cells.columns.difference(later, sort=False), *later]]
 
 
 def _save(page, paths):

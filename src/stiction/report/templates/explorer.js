@@ -361,17 +361,17 @@ function opened(number) {
       const chart = axesOf(place, `${share} against ${size.label}`, ends, [LEAST, 0], [`${size.label} [${unit}]`, share], DECADES);
       const height = share => chart.y(Math.max(Math.log10(share), LEAST));
       const known = levels.layers[0][0], within = v => v >= known[0] && v <= known[known.length - 1];
-      const points = spread(...ends).map(value => [value, sign * Math.log(value)]).filter(([, v]) => within(v))
-        .map(([value, v]) => [chart.x(value), v, fractionsAt(levels.layers, v)]);
-      const layer = (k, shown) => shown.map(([x, , fractions]) => [x, height(fractions[k])]);
-      const resolved = points.filter(([, v]) => v >= (levels.layers[2][0][0] ?? -Infinity) - SAME);
-      make(chart.svg, "path", {class: "band", d: path([...layer(1, resolved), ...layer(2, resolved).reverse()])});
-      make(chart.svg, "path", {class: "curve", d: path(layer(0, points))});
+      const points = spread(...ends).map(value => [value, stuckAt(value, levels)]).filter(([, {share}]) => Number.isFinite(share));
+      const line = (end, shown) => shown.map(([value, stuck]) => [chart.x(value), height(stuck[end])]);
+      make(chart.svg, "path", {class: "band", d: path([...line("low", points), ...line("high", points).reverse()])});
+      make(chart.svg, "path", {class: "curve", d: path(line("share", points.filter(([value]) => within(sign * Math.log(value)))))});
       if (Number.isFinite(bound)) make(chart.svg, "line", {class: "safe", x1: chart.x(bound), x2: chart.x(bound), y1: TOP, y2: HEIGHT - BOTTOM});
-      const here = stuckAt(state[size.key], levels).share;
-      if (Number.isFinite(here)) make(chart.svg, "circle", {r: 6, class: "here", cx: chart.x(state[size.key]), cy: height(here)});
+      // A mean is above its band where the few cases beyond it decide; the dot is at the end of the band that the answer names.
+      const {share: mean, low, high} = stuckAt(state[size.key], levels), above = points.some(([, stuck]) => stuck.share > stuck.high + SAME);
+      if (Number.isFinite(mean)) make(chart.svg, "circle", {r: 6, class: "here", cx: chart.x(state[size.key]), cy: height(clamp(mean, low, high))});
       const dashed = Number.isFinite(bound) ? ` Dashed: ${data.words.bound} for ${oneIn(state.share)}.` : "";
-      hover(chart, ends, value => `At ${text(value, DIGITS)} ${unit}: ${stuckText(stuckAt(value, levels))}. Line: expected. Band: 95 %, where the simulation resolves it.${dashed}`, () => state[size.key])();
+      const expected = `Line: expected${above ? ", above its band where many can stick in the other 5 % of all cases" : ""}. Band: 95 %.`;
+      hover(chart, ends, value => `At ${text(value, DIGITS)} ${unit}: ${stuckText(stuckAt(value, levels))}. ${expected}${dashed}`, () => state[size.key])();
     };
   }
 

@@ -1,15 +1,10 @@
 """Contacts of other solids at other temperatures, by which the estimate is tested: none of them is learnt.
 
 As `stiction.estimate.learning.training` and `stiction.estimate.learning.patches`, with other moduli, Hamaker constants
-and contact angles on both sides:
-
-    python -m stiction.estimate.learning.other_solids.points FOLDER [SET [FIRST LAST]]
+and contact angles on both sides.
 """
 
 import math
-import sys
-from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -24,7 +19,6 @@ from stiction.estimate.learning.training import (
     TrainingTips,
     changes_of,
     full_contact_of,
-    main,
     of_beam,
     water_of,
     with_materials,
@@ -41,13 +35,11 @@ TEMPERATURES = (275.0, 370.0)
 RANGES = {"modulus": (60.0, 400.0), "poisson_ratio": (0.15, 0.35), "hamaker": (4.6, 250.0), "angle": (0.0, 80.0)}
 #: Sets of points by name. Their seeds are in no other set.
 SETS = {
-    "decide_typical": TrainingEffort(16, 21, SurfaceLaw.TYPICAL, 40, to_si(1600, "um"), 1, 1, 400),
-    "decide_any": TrainingEffort(16, 22, SurfaceLaw.ANY, 40, to_si(1600, "um"), 1, 1, 400),
+    "decide_typical": TrainingEffort(40, 21, SurfaceLaw.TYPICAL, 40, to_si(1600, "um"), 1, 1, 400),
+    "decide_any": TrainingEffort(40, 22, SurfaceLaw.ANY, 40, to_si(1600, "um"), 1, 1, 400),
     "check_typical": TrainingEffort(16, 23, SurfaceLaw.TYPICAL, 40, to_si(1600, "um"), 1, 1, 400),
     "check_any": TrainingEffort(16, 24, SurfaceLaw.ANY, 40, to_si(1600, "um"), 1, 1, 400),
 }
-#: The same of patches, which the first of these points have.
-OF_PATCHES = {name: replace(effort, points=12 if name.startswith("decide") else 8) for name, effort in SETS.items()}
 
 
 def drawn(point: Point, seed: int) -> tuple[float, list[dict[str, Any]]]:
@@ -103,9 +95,3 @@ def computed_patches(point: Point, name: str, valid: dict[str, Any]) -> dict[str
     forces = patches.forces_in(point, plan, [humidity], effort.patches, effort.seed)
     results = {"humidity": np.array(humidity), "sides": np.array(sides), "forces": forces.astype(np.float32)}
     return results | patches.change_in(point, plan, humidity, effort.seed)
-
-
-if __name__ == "__main__":
-    trained = Path(sys.argv[1]) / FOLDER
-    main(training.base(), computed, trained, SETS, *sys.argv[2:])
-    main(patches.base(), computed_patches, trained / patches.FOLDER, OF_PATCHES, *sys.argv[2:])

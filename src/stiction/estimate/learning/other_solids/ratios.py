@@ -2,17 +2,12 @@
 
 Tips, patches and bridges on summits, on the strips of some points of `stiction.estimate.learning.training`,
 `stiction.estimate.learning.patches` and `stiction.estimate.learning.bridges`, so that what changes is one ratio alone:
-the attraction through water with what follows from it through air, then that through air, or the stiffness:
-
-    python -m stiction.estimate.learning.other_solids.ratios FOLDER [SET [FIRST LAST]]
+the attraction through water with what follows from it through air, then that through air, or the stiffness.
 """
 
 import math
-import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import partial
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -20,7 +15,7 @@ import numpy as np
 from stiction.config.units import from_si, to_si
 from stiction.estimate.learning import bridges, patches, training
 from stiction.estimate.learning.design import Point, states
-from stiction.estimate.learning.training import TrainingEffort, TrainingTips, main, of_beam, train, with_materials
+from stiction.estimate.learning.training import TrainingEffort, TrainingTips, of_beam, with_materials
 from stiction.estimate.solids import OF_POLYSILICON, BesideWater, SolidPair, following
 from stiction.streams import stream
 
@@ -148,18 +143,3 @@ def computed_bridges(point: Point, name: str, valid: dict[str, Any], ratio: Lear
     each = zip(airs[:, 0], as_stiff(bridges.sizes_of(point, name), ratios.stiffness), strict=False)
     lengths = np.array([strips.lengths(height, size, effort.patches) for height, size in each])
     return _stored(ratios) | {"lengths": lengths.astype(np.float32)}
-
-
-if __name__ == "__main__":
-    for of_ratio in ALL:
-        trained = Path(sys.argv[1]) / of_ratio.folder
-        main(training.base(), partial(computed, ratio=of_ratio), trained, of_ratio.sets, *sys.argv[2:])
-        for each, of_set in of_ratio.of_bridges.items():
-            numbers = range(0, of_set.points, bridges.EVERY[each])
-            train(
-                trained / bridges.FOLDER / each,
-                of_set.all,
-                numbers,
-                bridges.base(),
-                partial(computed_bridges, ratio=of_ratio),
-            )

@@ -15,11 +15,12 @@ import numpy as np
 from stiction.config.units import to_si
 from stiction.estimate.bridge import COORDINATES as OF_BRIDGES
 from stiction.estimate.force import reciprocals
-from stiction.estimate.learning import bridges, patches
+from stiction.estimate.learning import bridges, patches, training
 from stiction.estimate.learning.bridge_rows import are_known, of_middle
 from stiction.estimate.learning.bridge_rows import states_of as bridges_of
 from stiction.estimate.learning.design import Point
 from stiction.estimate.learning.errors import Tested, beside, lengths_of
+from stiction.estimate.learning.files import numbers_of, path_of
 from stiction.estimate.learning.fit import DesignRows
 from stiction.estimate.learning.other_solids import points, ratios
 from stiction.estimate.learning.other_solids.ratios import LearntRatio, stored_ratios
@@ -73,14 +74,8 @@ def _changed(folder, ratio, place, part=""):
         for point, numbers in stored(folder / ratio.folder / part, name, sets):
             number = next(each.number for each in sets[name].all if each.sides == point.sides)
             before = folder / ratio.before.folder / part if ratio.before else folder / place
-            of_both = [_loaded(each / name / f"{number:04}.npz") for each in (folder / place, before)]
+            of_both = [numbers_of(each / name, number) for each in (folder / place, before)]
             yield _Changed(point, of_both[0], numbers, of_both[1], stored_ratios(numbers).logarithms)
-
-
-def _loaded(path):
-    """Numbers of a file."""
-    with np.load(path) as file:
-        return dict(file)
 
 
 def _rows(entries, ratio, columns, names):
@@ -97,7 +92,7 @@ def rows_of_tips(folder: Path, modulus: float, ratio: LearntRatio) -> RowsOfRati
     """Rows of all tips on summits at the points of a ratio."""
     entries = (
         (one.point.number, state.coordinates, *(of_tips(slopes / state.flooded_slope) for slopes in both), by)
-        for one in _changed(folder, ratio, "")
+        for one in _changed(folder, ratio, training.FOLDER)
         for by in [one.logarithms]
         for states, of_air in zip(
             states_of(one.point, one.of_polysilicon["airs"][: ratios.AIRS], modulus),
@@ -139,12 +134,12 @@ def solids_of(point: Point, name: str) -> tuple[SolidPair, float]:
 def _stored(folder, name, as_polysilicon):
     """Points of a set with their numbers, with solids and film as stated or as of polysilicon."""
     for point in points.SETS[name].all:
-        if (file := folder / name / f"{point.number:04}.npz").exists():
-            with np.load(file) as numbers:
-                solids, temperature = solids_of(point, name)
-                solids = SolidPair() if as_polysilicon else solids
-                water = film(float(numbers["humidity"]), temperature, solids.wetting)
-                yield point, dict(numbers), solids, water
+        if path_of(folder / name, point.number).exists():
+            numbers = numbers_of(folder / name, point.number)
+            solids, temperature = solids_of(point, name)
+            solids = SolidPair() if as_polysilicon else solids
+            water = film(float(numbers["humidity"]), temperature, solids.wetting)
+            yield point, numbers, solids, water
 
 
 def tested(

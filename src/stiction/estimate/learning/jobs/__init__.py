@@ -1,0 +1,1 @@
+"""Points of the estimate as jobs of a workflow of their own."""
