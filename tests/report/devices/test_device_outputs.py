@@ -231,11 +231,18 @@ def test_a_line_leads_to_a_size_to_build_from_the_limit_of_the_own_thickness(thi
     expected = [[(rh, size), (rh, top)] for rh, size, top in zip((0.4, 0.5), (90, 80), limits, strict=False)]
     assert len(lines) == len(limits)
     np.testing.assert_allclose(lines, np.reshape(expected, np.shape(lines)))
-    numbers = [text.get_text() for text in sizes_in(panel)]
-    assert numbers == ["90", "80, but 70 µm if\nwater dries on it"]
+    numbers = [" ".join(text.get_text().split()) for text in sizes_in(panel)]
+    assert numbers == ["C1: 90", "C1: 80, but 70 µm if water dries on it"]
+    thick = [line for line in panel.lines if line.get_linewidth() == 2 and len(line.get_xdata()) > 2]
+    own, hung = (
+        {to_hex(line.get_color()) for line in drawn}
+        for drawn in (thick, [line for line in panel.lines if line.get_label() == FROM_LIMIT])
+    )
+    assert own == hung, "a mark hangs from the curve of its own thickness"
+    assert len(own) == len(limits[:1])
 
 
-FROM_LIMIT = "from the limit of the thickness of C1 to its size"
+FROM_LIMIT = "from the curve of C1 down to its size to build"
 
 
 def sizes_in(panel):

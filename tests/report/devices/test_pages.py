@@ -200,7 +200,9 @@ def test_the_adhesion_parameter_of_a_pair_is_a_fact_where_its_summits_are_stated
         return pages._facts_of(section)
 
     stated = facts({"devices": {"S1": bump}})["adhesion parameter θ"]
-    assert stated == "81.1 to 113 (of dry wafers without menisci, which bond below 1, and do not adhere above 12)"
+    assert (
+        stated == "81.1 to 113 (for comparison: dry wafers bond below 1 and do not adhere above 12; water is left out)"
+    )
     mine = {"rms_nm": 5, "hurst": 0.8, "correlation_length_nm": 100, "cutoff_rad_per_um": 138, "like": "B2"}
     unknown = {
         "surfaces": {"Mine": mine},

@@ -68,9 +68,12 @@ def test_a_length_to_build_shares_the_line_of_other_steep_lengths_and_is_named()
     steepest_of_chart, built = (limits.large_rotation(20e-6, length) for length in (171e-6, 200e-6))
     chart = {"chart": [steepest_of_chart], "other": [limits.large_rotation(20e-6, 180e-6)]}
     (line,) = lines_with_numbers(chart, [built])
-    assert line == f"(1) and (2) {text(steepest_of_chart)} This is the worst of 3. At 200 µm the slope is 0.15."
+    others = "This is the worst of 3. At 200 µm (the device itself) the slope is 0.15."
+    assert line == f"(1) and (2) {text(steepest_of_chart)} {others}"
     assert lines_with_numbers(chart, [steepest_of_chart]) == lines_with_numbers(chart), "it has a number"
     assert lines_with_numbers({}, [built]) == [text(built)]
+    (named,) = lines_with_numbers(chart, [built], {steepest_of_chart: "C1, chart, 2 µm thick", built: "no"})
+    assert named == line.replace("(2) At", "(2) C1, chart, 2 µm thick: At")
     (worse,) = lines_with_numbers({"chart": [built]}, [steepest_of_chart])
     assert worse == f"(1) {text(steepest_of_chart)} This is the worst of 2.", "the worst is in the sentence"
 

@@ -215,7 +215,8 @@ def _lines_of_chart(panel, name, curves, of_device, placed, marks):
     _thicknesses(panel, curves, shape, placed, is_its_own)
     sizes, is_whole = [], not END_STATES[shape].only_if
     if has_its_gap and is_whole:
-        sizes = _mark_sizes_to_build(panel, _limits(curves.isel(thickness=is_its_own)), answer, placed)
+        (colour,) = shades(curves.sizes["thickness"])[np.flatnonzero(is_its_own)] if is_its_own.any() else (BUILD,)
+        sizes = _mark_sizes_to_build(panel, _limits(curves.isel(thickness=is_its_own)), answer, placed, colour)
     low, high = panel.dataLim.intervaly
     panel.set(xlabel="relative humidity [–]", ylabel=_OF_CHART, ylim=(0.95 * low, high + _ROOM * (high - low)))
     humidity_axis(panel, placed)
@@ -240,11 +241,11 @@ def _limits(curves):
     return TO_UM * curves.safe_length.sel(share=_middle(curves)).transpose("thickness", "relative_humidity")
 
 
-def _mark_sizes_to_build(panel, limits, answer, placed):
+def _mark_sizes_to_build(panel, limits, answer, placed, colour):
     """Mark the size to build of a device in each stated air, and in all of them where it is decided.
 
-    A line leads to each from the simulated limit of a beam of its thickness, if the chart has this (1 or 0, humidity).
-    There are none if a limit forbids them.
+    A line in the colour of its thickness leads to each from the simulated limit of a beam of this, if the chart has it
+    (1 or 0, humidity): the mark can be on the curve of another thickness. There are none if a limit forbids them.
 
     Returns
     -------
@@ -264,36 +265,41 @@ def _mark_sizes_to_build(panel, limits, answer, placed):
             at, height = placed.get(humidity, humidity), TO_UM * size
             limit = limits.sel(relative_humidity=limits.relative_humidity == humidity).values.ravel()[:1]
             for top in limit:
-                panel.plot([at, at], [height, top], color=BUILD, linewidth=1.4, label=_LED.format(name=answer.device))
+                style_of_line = {"color": colour, "linewidth": _WIDTHS[True], "zorder": 3}
+                panel.plot([at, at], [height, top], **style_of_line, label=_LED.format(name=answer.device))
             panel.plot(at, height, "D", color=BUILD, markersize=6, zorder=4, linestyle="", path_effects=_HALO, **style)
-            number = bounding(size / sought.scale, 3, sought.more_is_better)
+            number = f"{answer.device}: {bounding(size / sought.scale, 3, sought.more_is_better)}"
             words = [number, *stricter[:1]] if humidity == decides else [number]
             named.append((textwrap.fill(", but ".join(words), _NARROW), at, (height, *limit)))
     return named
 
 
 #: What the line of a size to build is, in the legend.
-_LED = "from the limit of the thickness of {name} to its size"
+_LED = "from the curve of {name} down to its size to build"
 #: Longest line of the words on a size to build [characters], and steps by which they are raised [points].
 _NARROW, _STEPS = 20, range(2, 80, 2)
+#: Parts of a line, from its lower end, beside which words on a size to build are.
+_PARTS_OF_LINE = (0.5, 0.3, 0.7, 0.15, 0.85)
 
 
 def _name_size(panel, words, at, heights):
-    """Words on a size to build beside the middle of its line, or above it along a thin one, clear of all lines.
+    """Words on a size to build beside its line, best at its middle, or above it along a thin one, clear of all lines.
 
-    They are below the size where nothing else is clear.
+    They are below the size where nothing else is clear, also with the name on a line of its own.
     """
     style = {"textcoords": "offset points", "fontsize": 7, "linespacing": 1, "path_effects": OUTLINED, "zorder": 5}
     text, top = panel.annotate(words, (at, max(heights)), (0, 0), color=BUILD, **style), max(heights)
-    beside, above = [(np.mean(heights), 0, "center")], [(top, up, "bottom") for up in _STEPS]
+    beside = [(np.quantile(heights, part), 0, "center") for part in _PARTS_OF_LINE]
+    above = [(top, up, "bottom") for up in _STEPS]
     anywhere = [*beside, *above, (min(heights), -3, "top")]
-    for (height, up, vertical), (apart, side) in product(anywhere, ((5, "left"), (-5, "right"))):
+    in_lines = words, words.replace(": ", ":\n", 1)
+    for shown, (height, up, vertical), (apart, side) in product(in_lines, anywhere, ((5, "left"), (-5, "right"))):
         text.xy = at, height
-        text.set(position=(apart, up), ha=side, va=vertical)
+        text.set(text=shown, position=(apart, up), ha=side, va=vertical)
         if _is_clear(panel, text):
             break
     if vertical == "bottom":
-        end = text.get_window_extent().transformed(panel.transData.inverted()).y1
+        end = text.get_window_extent().transformed(panel.transData.inverted()).y0
         panel.plot([at, at], [top, end], color=BUILD, linewidth=0.6)
 
 

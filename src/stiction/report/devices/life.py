@@ -53,12 +53,12 @@ _SAFE_SIDE = {sought.shown: sought.more_is_better for sought in SOUGHT.values()}
 CAPTION = (
     "The life of a device, in the order of a designer's questions: what brings a device into contact (touch), whether "
     "it then sticks (stick), what holds it (hold), what frees it (free). Every answer is between at least and at "
-    "most, which are equal where the model leaves nothing open. No bound is known where there is –, and none without "
-    "the keys that a row asks for. The column ± has the standard uncertainty of the lower bound, due to the stated "
-    "uncertainties of the device or to sampled surfaces. Voltage, shock, energy and force of a beam are those of its "
-    "length, which is stated or its least simulated limit. A liquid that dries is not humid air: it holds the whole "
-    "area that it wets. Lengths and forces are simulated limits: all inputs count as exact. The answer of the device "
-    "has everything inside."
+    "most, which are equal where the model leaves nothing open. A – means that no number is known, or that a key is "
+    "missing, which the row then names. The column ± has the standard uncertainty of the lower bound, due to the "
+    "stated uncertainties of the device or to sampled surfaces. For a beam, voltage, shock, energy and force are "
+    "computed at its stated length, without one at its least simulated limit. A liquid that dries is not humid air: it "
+    "holds the whole area that it wets. Lengths and forces are simulated limits with exact inputs: build the size of "
+    "the answer, which has everything inside."
 )
 _COLOURS = dict(zip(QUESTIONS, ("#0072B2", "#C98500", "#CC79A7", "#009E73"), strict=True))
 #: What each question asks.

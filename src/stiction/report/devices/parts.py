@@ -18,6 +18,7 @@ from stiction.report.devices import figures as figures_devices
 from stiction.report.devices import tables as tables_devices
 from stiction.report.limits.words import lines_with_numbers, texts
 from stiction.report.page import Section
+from stiction.stages.devices import device_warnings
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.results import charts_of, results_of
 from stiction.stages.devices.stoppers import ends
@@ -88,8 +89,16 @@ def _parts_of_beam(name, section, data, answer):
         picture = figures_devices.chart(axis, warnings, {name: (*figures_devices.own_sizes(section), answer)})
         sections.append(Section("Other thicknesses and humidities", (), cells, picture))
     texts_of_cases = [*sentences.few_sentences(lengths), *sentences.prediction_sentences(lengths)]
-    listed = lines_with_numbers(warnings, sentences.shortest_warnings(section, answer))
+    subjects = _other_beams(data["warnings"])
+    listed = lines_with_numbers(warnings, sentences.shortest_warnings(section, answer), subjects)
     return sections, texts_of_cases, listed, _words_of_beam(data)
+
+
+def _other_beams(warnings):
+    """Beams of a chart in words, by the limits that those of the device itself do not have."""
+    own = {limit for limits in warnings.lengths.values() for limit in limits}
+    of_charts = device_warnings.subjects(warnings._replace(lengths={}, patches={}))
+    return {limit: str(subject) for subject, limits in of_charts.items() for limit in limits if limit not in own}
 
 
 def _words_of_beam(data):

@@ -465,7 +465,7 @@ _WORST = {"large_rotation": "slope"}
 #: Milder limits of such a line in words.
 _ALSO = {
     "large_rotation": lambda crack_length, slope: (
-        f"At {bounding(TO_UM * crack_length, 3, up=False)} µm the slope is {slope:.3g}."
+        f"At {bounding(TO_UM * crack_length, 3, up=False)} µm (the device itself) the slope is {slope:.3g}."
     ),
 }
 
@@ -496,21 +496,25 @@ def with_numbers(limits: Mapping[Any, Iterable[Limit]]) -> list[str]:
     return [f"({k}) {sentence}" for k, sentence in enumerate(texts(distinct(limits)), 1)]
 
 
-def lines_with_numbers(limits: Mapping[Any, Iterable[Limit]], others: Iterable[Limit] = ()) -> list[str]:
+def lines_with_numbers(
+    limits: Mapping[Any, Iterable[Limit]], others: Iterable[Limit] = (), subjects: Mapping[Limit, str] | None = None
+) -> list[str]:
     """Sentences on the worst limit of each line, after the numbers of all of its limits.
 
-    ``others`` have no number, because no table has their size: a line that they share names it.
+    ``others`` have no number, because no table has their size: a line that they share names it. Limits of another
+    device than that of the page have their ``subjects`` in words.
     """
     numbers, lines = {limit: f"({k})" for k, limit in enumerate(distinct(limits), 1)}, {}
     for limit in dict.fromkeys([*numbers, *others]):
         lines.setdefault(line_of(limit), []).append(limit)
-    return [_line(line, numbers) for line in lines.values()]
+    return [_line(line, numbers, subjects or {}) for line in lines.values()]
 
 
-def _line(line, numbers):
-    """Limits of a line in words, with the numbers of those that have one."""
+def _line(line, numbers, subjects):
+    """Limits of a line in words, with the numbers and subjects of those that have one."""
     shown, marks = worst(line), [numbers[limit] for limit in line if limit in numbers]
-    parts = [*([listed(marks)] if marks else []), text(shown)]
+    subject = [f"{subjects[shown]}:"] if shown in subjects else []
+    parts = [*([listed(marks)] if marks else []), *subject, text(shown)]
     parts += [f"This is the worst of {len(line)}."] * (len(line) > 1)
     parts += [_ALSO[limit.kind](**limit.numbers) for limit in line if limit not in numbers and limit != shown]
     return " ".join(parts)

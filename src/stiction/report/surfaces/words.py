@@ -54,11 +54,11 @@ def adhesion_in_words(parameters: Collection[float]) -> str:
     Examples
     --------
     >>> adhesion_in_words([81.2, 112.8])
-    '81.2 to 113 (of dry wafers without menisci, which bond below 1, and do not adhere above 12)'
+    '81.2 to 113 (for comparison: dry wafers bond below 1 and do not adhere above 12; water is left out)'
     """
     ends = dict.fromkeys(f"{end:.3g}" for end in (min(parameters), max(parameters)))
-    of_wafers = f"of dry wafers without menisci, which bond below {BOND}, and do not adhere above {ADHERE}"
-    return f"{' to '.join(ends)} ({of_wafers})"
+    wafers = f"dry wafers bond below {BOND} and do not adhere above {ADHERE}"
+    return f"{' to '.join(ends)} (for comparison: {wafers}; water is left out)"
 
 
 def _numbers_in_words(section, words):
