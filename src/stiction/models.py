@@ -4,12 +4,6 @@
 SURFACE_MODELS = ("G", "NG")
 #: Models of the beams: GEO has the force laws of NG and beams of scattered dimensions.
 BEAM_MODELS = (*SURFACE_MODELS, "GEO")
-#: Surfaces and beams of these models, in words.
-MODELS_IN_WORDS = {
-    "G": "Gaussian surfaces",
-    "NG": "non-Gaussian surfaces",
-    "GEO": "non-Gaussian surfaces and beams of scattered dimensions",
-}
 #: The two surfaces of a pair, in the order in which all sequences contain them.
 SIDES = ("beam", "substrate")
 #: Quantities of maximum-entropy heights, of measured heights and of spectra, see `stiction.analysis.shifts`.

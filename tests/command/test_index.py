@@ -11,9 +11,10 @@ from noted import noted, save_page
 from test_front_page import finished
 
 from stiction.command import index, main
+from stiction.command.front_page import MODELS_IN_WORDS
 from stiction.command.present import Present
 from stiction.config.files import load, paper
-from stiction.models import BEAM_MODELS, MODELS_IN_WORDS, SIDES
+from stiction.models import BEAM_MODELS, SIDES
 from stiction.plan.planner import Planner
 from stiction.run.provenance import record
 

@@ -14,7 +14,6 @@ import yaml
 from stiction.command.present import Present
 from stiction.config.merging import differing
 from stiction.config.reading import paper
-from stiction.models import MODELS_IN_WORDS
 from stiction.report.format import humidity_text, with_error
 from stiction.report.html import rendered
 from stiction.run.markdown import plain
@@ -31,6 +30,12 @@ _BRACES = str.maketrans({"{": "&#123;", "}": "&#125;"})
 #: Stages whose results to open first: those of devices, if there are any, and of pairs.
 _OF_DEVICES = ("device_page", "table_devices", "table_safe_lengths", "table_stoppers", "figure_risk")
 _OF_PAIRS = ("table_3", "figure_overview", "table_scans", "table_1")
+#: Surfaces and beams of the models, in words.
+MODELS_IN_WORDS = {
+    "G": "Gaussian surfaces",
+    "NG": "non-Gaussian surfaces",
+    "GEO": "non-Gaussian surfaces and beams of scattered dimensions",
+}
 
 
 def front_page(folder: Path) -> str:

@@ -21,7 +21,7 @@ from stiction.config.kinds import kind_of
 from stiction.config.materials import Materials
 from stiction.config.merging import differing
 from stiction.config.reading import paper
-from stiction.models import MODELS_IN_WORDS, SIDES
+from stiction.models import SIDES
 from stiction.plan.planner import Planner, hashes
 from stiction.plan.stage import WILDCARDS, expression
 from stiction.report.drawings import device_drawing
@@ -135,7 +135,7 @@ def index(folder: Path, rules: Iterable[Mapping[str, Any]], unlike: Collection[s
         devices=list(_devices(results, config, all_items)),
         pairs=front_page.pairs(results),
         length=config["beam"]["length_um"],
-        models=MODELS_IN_WORDS,
+        models=front_page.MODELS_IN_WORDS,
         surfaces=list(_surfaces(results, shown)),
         figures=_by_category(item for item in all_items if item.shown.endswith(".png")),
         tables=sorted((item for item in all_items if item.category == "Tables"), key=_order),
