@@ -43,8 +43,13 @@ def test_what_decides_is_in_full_colour_and_the_other_airs_are_dashed():
     decides, other = found[DECIDES], found["RH 0.44 alone"]
     (mean,) = (line for line in panel.lines if line.get_linewidth() < 1 and len(line.get_xdata()) > 2)
     np.testing.assert_allclose(mean.get_xydata(), np.transpose([1e6 * SIZES, answer.curve[0]]))
-    np.testing.assert_allclose(decides.get_xydata(), np.transpose(answer.at_most(answer.together)) * [1e6, 1])
-    np.testing.assert_allclose(other.get_ydata(), answer.airs[0].curve[2])
+    for line, air in ((decides, answer.together), (other, answer.airs[0])):
+        sizes, bound = answer.at_most(air)
+        is_shown, lowest = np.isfinite(line.get_ydata()), bound == bound.min()
+        np.testing.assert_allclose(line.get_xdata(), 1e6 * sizes)
+        np.testing.assert_allclose(line.get_ydata()[is_shown], bound[is_shown])
+        assert np.all(is_shown | lowest)
+        assert (is_shown & lowest).sum() == 1
     assert len(found) == 3, "the air that decides is the curve of all"
     assert mean.get_color() == decides.get_color()
     for line, humidity in ((decides, 0.92), (other, 0.44)):
@@ -57,6 +62,18 @@ def test_what_decides_is_in_full_colour_and_the_other_airs_are_dashed():
     assert other.get_linewidth() < decides.get_linewidth()
     assert panel.get_yscale() == "log"
     assert panel.get_title(loc="left") == "C1, cantilever"
+
+
+def test_a_bound_that_stays_level_at_safer_sizes_ends_where_it_begins_to():
+    """A level line would say that as many stick at all of them."""
+    answer = replace(answered(), curve=np.array([[0.5] * len(SIZES)] * 3), build=1.001 * SIZES[3], share=1e-3)
+    (panel,) = risk({"C1": answer}).axes
+    thick = lines_of(panel)[DECIDES]
+    sizes, bound = answer.at_most(answer.together)
+    assert (bound == 1e-3).sum() > 3, "control: the bound is level at all safer sizes"
+    is_shown = np.isfinite(thick.get_ydata())
+    assert sizes[is_shown].min() == answer.build
+    np.testing.assert_allclose(thick.get_ydata()[is_shown], bound[sizes >= answer.build])
 
 
 def test_the_simulated_limit_and_the_size_to_build_are_lines_and_the_latter_is_stated():
@@ -113,8 +130,8 @@ def test_legends_are_below_all_panels_and_name_what_is_drawn_once():
     figure = risk({"C1": answered(), "C2": answered(build=np.nan, size=np.nan)})
     (common,) = figure.legends
     assert [text.get_text() for text in common.get_texts()] == [
-        "95 % confidence: no more stick",
-        "mean, with the worst 5 % of cases",
+        "at most so many stick (95 %)",
+        "mean over all cases",
         "limit by simulation, exact inputs",
         "to build: thick line at allowed",
         "stated size",
@@ -150,7 +167,7 @@ def test_the_ladder_which_has_no_titles_names_stricter_sizes_in_its_legend():
         steps, stuck = figure.axes
         names = [text.get_text() for text in stuck.get_legend().get_texts()]
         assert [name for name in names if "stricter" in name] == said
-        assert {"95 % confidence: no more stick", "limit by simulation, exact inputs"} < set(names)
+        assert {"at most so many stick (95 %)", "limit by simulation, exact inputs"} < set(names)
         assert (steps.get_legend(), figure.legends, covering(figure)) == (None, [], []), "below its own panel"
 
 

@@ -388,7 +388,7 @@ def test_a_stopper_shows_the_force_to_build_unless_a_limit_forbids_it(is_allowed
     diamonds = [line.get_xydata() for line in below.lines if line.get_marker() == "D"]
     assert_allclose(diamonds, [[[known.together.humidity, 1e6 * known.build]]] if is_allowed else [])
     assert [panel.get_title("left") for panel in (above, below)] == [
-        "(a) S1: share stuck",
+        "(a) S1: share stuck after one touchdown",
         "(b) S1: force against humidity",
     ]
     assert (f"to build, {force}" in texts[0]) == (f"to build for all stated airs, {force}" in texts[1]) == is_allowed

@@ -301,12 +301,11 @@ def test_the_size_to_build_is_named_with_the_stricter_ones_below_the_panels():
     assert covering(figure) == []
 
 
-def test_words_say_that_more_stick_above_each_line_and_where_there_is_no_size_to_build():
+def test_words_say_that_more_stick_above_each_line():
     _, panels = charts()
-    for (_, shape), panel in panels.items():
+    for panel in panels.values():
         assert "one touchdown" in panel.get_ylabel()
-        (words,) = [text.get_text() for text in panel.texts if "more stick" in text.get_text()]
-        assert words.endswith("no size to build here") == (shape == S_SHAPE)
+        assert len([text for text in panel.texts if text.get_text() == "above each line: more stick"]) == 1
 
 
 NINE = {("C1", round(rh, 2)): charted(round(rh, 2), 2 - rh**2) for rh in np.linspace(0.4, 0.8, 9)}

@@ -351,3 +351,19 @@ def test_the_facts_of_a_mission_name_all_its_conditions_and_its_table_has_no_das
     without = beam_page(CANTILEVER, {0.67: of_length(300e-6)})
     assert "conditions" not in without.facts
     assert "°C" not in without.summary.cells
+
+
+def test_the_section_of_the_steps_names_all_stricter_sizes():
+    """Those of airs between the stated ones, and of causes that are no step, among them."""
+    lengths = {0.44: of_length(300e-6), 0.67: of_length(300e-6)}
+    found = beam_answer(CANTILEVER, lengths)
+    told = []
+    for between in (None, Between(0.5, 0.8 * found.build, found.build)):
+        page = beam_page(CANTILEVER, lengths, answer=replace(found, between=between, unasked=()))
+        (steps,) = [section for section in page.sections if section.title == "From the estimate to the answer"]
+        told.append([text for text in steps.paragraphs if text.startswith("Stricter, ")])
+    size = safe_size(0.8 * found.build, found.sought)
+    assert told == [
+        [],
+        [f"Stricter, whether it is a row or not: {size} between these airs (interpolated at RH 0.5: compute it)."],
+    ]

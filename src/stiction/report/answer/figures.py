@@ -52,7 +52,7 @@ _LINE = 38
 _DASHES, _THICK, _THIN = ((0, (5, 2)), (0, (1.2, 1.2)), (0, (7, 2, 1.2, 2))), 2.0, 0.7
 #: What curves mean, with their widths, by whether there is a size to build.
 _MEANINGS = {
-    True: {"95 % confidence: no more stick": _THICK, "mean, with the worst 5 % of cases": _THIN},
+    True: {"at most so many stick (95 %)": _THICK, "mean over all cases": _THIN},
     False: {"mean": _THICK},
 }
 #: Place of the label of a fraction.
@@ -179,11 +179,11 @@ def _curves(panel, answer, scale):
     together, alone = answer.together, " alone" * is_together
     others = [air for air in answer.airs if air.humidity != together.humidity]
     for air, dashes in zip(others, cycle(_DASHES), strict=False):
-        sizes, fractions = answer.at_most(air) if has_build else (answer.sizes, air.curve[0])
+        sizes, fractions = _falling(*answer.at_most(air)) if has_build else (answer.sizes, air.curve[0])
         style = {"linestyle": dashes, "color": humidity_colour(air.humidity), "linewidth": 1.1}
         panel.plot(sizes / scale, fractions, **style, label=f"{Air(air.humidity).words}{alone}")
     colour, decides = humidity_colour(together.humidity), Air(together.humidity).words
-    sizes, fractions = answer.at_most(together) if has_build else (answer.sizes, together.curve[0])
+    sizes, fractions = _falling(*answer.at_most(together)) if has_build else (answer.sizes, together.curve[0])
     label = f"all airs; {decides} decides" if is_together else decides
     panel.plot(sizes / scale, fractions, color=colour, linewidth=_THICK, label=label)
     if has_build:
@@ -192,6 +192,11 @@ def _curves(panel, answer, scale):
     band = answer.curve[1:]
     style = {"color": colour, "alpha": 0.2, "linewidth": 0, "label": "its 95 % band"}
     panel.fill_between(answer.sizes / scale, *band, where=_resolved(band[1]), **style)
+
+
+def _falling(sizes, fractions):
+    """Bound of P(stuck) without the safer sizes at which it is no lower: nothing says that as many stick there."""
+    return sizes, np.where(_resolved(fractions), fractions, np.nan)
 
 
 def _stricter(panel, answer, scale, label):
@@ -204,7 +209,7 @@ def _stricter(panel, answer, scale, label):
 
 
 def _resolved(upper):
-    """Where the upper end of a band is above the least that the simulation resolves, and next to it (n,)."""
+    """Where an upper end is above its least value, which the simulation resolves no more, and next to it (n,)."""
     above = upper > upper.min()
     return np.convolve(above, np.ones(3), "same") > 0
 

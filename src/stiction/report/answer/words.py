@@ -291,7 +291,7 @@ def of_airs(answer: Answer) -> list[dict[str, str]]:
         row |= {"touchdowns": f"{answer.touchdowns_in(air.humidity):.5g}"} if answer.stays else {}
         row |= {f"{sought.name} to build [{sought.shown}]": _size(answer, shown.build)}
         if np.isfinite(air.without_tip):
-            row["if the tip cannot touch [µm]"] = _size(answer, air.without_tip)
+            row["if the tip cannot touch and the model holds [µm]"] = _size(answer, air.without_tip)
         if shown.stuck is not None:
             row[f"P(stuck){after} at {answer.size / sought.scale:.4g} {sought.shown}"] = stuck_in_words(shown.stuck)
         rows.append(row)

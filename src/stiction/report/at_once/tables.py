@@ -41,7 +41,7 @@ class Sizes:
         return {
             "stuck": (one_in, "share"),
             f"run [{self.symbol}]": (with_error, run, error),
-            f"estimate [{self.symbol}]": (self.form, estimate),
+            f"estimate at once [{self.symbol}]": (self.form, estimate),
             f"{CONFIDENCE} % [{self.symbol}]": (self._ends, *ends),
             "inside": (lambda inside: inside or MISSING, "inside"),
         }

@@ -86,7 +86,7 @@ def stoppers(
     for line in lines:
         line[0, 0].set_ylabel("P(stuck) [–]")
         line[1, 0].set_ylabel(on_own_axes("pull-off force [µN]", line))
-    letter_lines(lines, list(datasets), (": share stuck", ": force against humidity"))
+    letter_lines(lines, list(datasets), (": share stuck after one touchdown", ": force against humidity"))
     if sentences := [f"{name}: {sentence}" for name, limits in warnings.items() for sentence in words.texts(limits)]:
         figure.set_label("\n".join(["Warnings:", *sentences]))
         figure.supxlabel("Some results are beyond limits of the model.", fontsize=7, ha="left", x=0.01)

@@ -220,9 +220,8 @@ def _lines_of_chart(panel, name, curves, of_device, placed, marks):
     low, high = panel.dataLim.intervaly
     panel.set(xlabel="relative humidity [–]", ylabel=_OF_CHART, ylim=(0.95 * low, high + _ROOM * (high - low)))
     humidity_axis(panel, placed)
-    only = "" if is_whole else "\nno size to build here"
     style = {"xycoords": "axes fraction", "ha": "right", "va": "top", "fontsize": 7, "path_effects": OUTLINED}
-    panel.annotate(f"above each line: more stick{only}", (0.98, 0.98), **style)
+    panel.annotate("above each line: more stick", (0.98, 0.98), **style)
     own = [f" ({name})" * int(is_own) for is_own in is_its_own]
     _name_thicknesses(panel, curves, [f"{who}{mark}" for who, mark in zip(own, marks.values(), strict=True)])
     return sizes

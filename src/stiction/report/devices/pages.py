@@ -22,6 +22,7 @@ from stiction.report import drawings, html
 from stiction.report.answer import figures as figures_answer
 from stiction.report.answer import judged, screen
 from stiction.report.answer import tables as tables_answer
+from stiction.report.answer.words import stricter
 from stiction.report.at_once import tables as tables_at_once
 from stiction.report.axes import figures as figures_axes
 from stiction.report.axes import roughness as sentences_roughness
@@ -62,8 +63,8 @@ _LADDER = (
     "but the estimate have a confidence of 95 %. Lines: the size to build, and yours (dotted)."
 )
 _LADDER_TO_BUILD = (
-    "Build the size of the row marked so, which counts all that you stated, and none above it. A row that is not "
-    "stated has the size to build if this happened, too."
+    "Build the size of the row that ends in “to build”: it counts all that you stated. A row below it is this size "
+    "where something that you did not state happens as well."
 )
 _NO_ERROR = "Not inside: the error of the model of the contact, which study full_contact computes."
 
@@ -100,7 +101,9 @@ def _steps(answer):
     if not answer.known_steps:
         return []
     ladder = tables_answer.steps(answer), figures_answer.ladder(answer)
-    text = (_LADDER,) if answer.forbidden else (_LADDER, _LADDER_TO_BUILD)
+    text = [_LADDER] if answer.forbidden else [_LADDER, _LADDER_TO_BUILD]
+    if sizes := stricter(answer):
+        text.append(f"Stricter, whether it is a row or not: {', '.join(sizes)}.")
     return [Section("From the estimate to the answer", text, *ladder)]
 
 

@@ -305,8 +305,8 @@ function opened(number) {
     };
   }
 
-  /** Note that a size to build is that for all airs: it is in the air that decides. */
-  const together = ({humidity}) => Number(data.words.all_airs) === humidity ? ", all airs together" : "";
+  /** Note that a size to build is that for all stated airs: it is in the air that decides. */
+  const together = ({humidity}) => Number(data.words.all_airs) === humidity ? ", stated airs together" : "";
 
   function texts() {
     const unit = grid.size.unit, words = data.words, levels = levelsOf(state);
@@ -378,9 +378,9 @@ function opened(number) {
       make(chart.svg, "path", {class: "band", d: path([...line("low", points), ...line("high", points).reverse()])});
       make(chart.svg, "path", {class: "curve", d: path(line("share", points.filter(([value]) => within(sign * Math.log(value)))))});
       if (Number.isFinite(bound)) make(chart.svg, "line", {class: "safe", x1: chart.x(bound), x2: chart.x(bound), y1: TOP, y2: HEIGHT - BOTTOM});
-      // A mean is above its band where the few cases beyond it decide; the dot is at the end of the band that the answer names.
-      const {share: mean, low, high} = stuckAt(state[size.key], levels), above = points.some(([, stuck]) => stuck.share > stuck.high + SAME);
-      if (Number.isFinite(mean)) make(chart.svg, "circle", {r: 6, class: "here", cx: chart.x(state[size.key]), cy: height(clamp(mean, low, high))});
+      // The dot is at the number that the words name: the end of the band where a bound alone is known, or where the few cases beyond it lift the mean.
+      const {share: mean, low, high, beyond} = stuckAt(state[size.key], levels), above = points.some(([, stuck]) => stuck.share > stuck.high + SAME);
+      if (Number.isFinite(mean)) make(chart.svg, "circle", {r: 6, class: "here", cx: chart.x(state[size.key]), cy: height(beyond < 0 ? high : clamp(mean, low, high))});
       const dashed = Number.isFinite(bound) ? ` Dashed: ${data.words.bound} for ${oneIn(state.share)}.` : "";
       const expected = `Line: expected${above ? ", above its band where many stick in the worst 5 %" : ""}. Band: 95 %.`;
       hover(chart, ends, value => `At ${text(value, DIGITS)} ${unit}: ${stuckText(stuckAt(value, levels))}. ${expected}${dashed}`, () => state[size.key])();
