@@ -1,10 +1,12 @@
 """The table of the estimate is that of the code: control numbers, page, and the design that it was learnt from."""
 
+import hashlib
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from stiction.command.at_once import estimate
 from stiction.estimate import dry as of_dry_air
 from stiction.estimate.answer import CONFIDENCES, TO_USE
 from stiction.estimate.bridge import COORDINATES as OF_BRIDGES
@@ -12,9 +14,10 @@ from stiction.estimate.dry_bridge import COORDINATES as OF_DRY_BRIDGES
 from stiction.estimate.learning import dry, dry_bridges, dry_patches
 from stiction.estimate.learning.design import FILMS, SurfaceLaw, points, states
 from stiction.estimate.learning.jobs import control
+from stiction.estimate.learning.training import SETS
 from stiction.estimate.page import page
 from stiction.estimate.state import COORDINATES, OF_PATCHES
-from stiction.estimate.table import FILE, Surrogate, content, process
+from stiction.estimate.table import FILE, Surrogate, content, origin, process
 from stiction.progress import without_progress
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -79,3 +82,18 @@ def test_films_of_a_point_are_within_their_range_and_its_own():
     assert np.all((films >= 1e-9 * FILMS[0]) & (films <= 1e-9 * FILMS[1]))
     np.testing.assert_array_equal(films, states(8, 3, 1)[:, 0])
     assert not np.any(films == states(8, 4, 1)[:, 0])
+
+
+#: What surfaces are drawn for.
+USES = ("learn", "decide", "check")
+
+
+def test_help_and_page_say_from_what_the_table_is_learnt(capsys):
+    points = {use: sum(effort.points for name, effort in SETS.items() if name.startswith(use)) for use in USES}
+    digest = hashlib.sha256(FILE.read_bytes()).hexdigest()
+    for word in (*map(str, points.values()), digest[:8]):
+        assert word in origin()
+    assert f">{origin()}</p>" in page()
+    with pytest.raises(SystemExit):
+        estimate.main(["-h"])
+    assert origin() in " ".join(capsys.readouterr().out.split())

@@ -8,7 +8,7 @@ import sys
 
 from stiction.estimate.answer import CONFIDENCES
 from stiction.estimate.promise import promise
-from stiction.estimate.table import FILE
+from stiction.estimate.table import FILE, origin
 from stiction.run.atomic import save_text
 
 
@@ -19,7 +19,7 @@ def page() -> str:
     for name, file in parts.items():
         text = text.replace(f"{{{{ {name} }}}}", FILE.with_name(file).read_text(encoding="utf-8").strip())
     promises = [promise(CONFIDENCES[0], is_force) for is_force in (False, True)]
-    return text.replace("{{ promises }}", json.dumps(promises))
+    return text.replace("{{ promises }}", json.dumps(promises)).replace("{{ origin }}", origin())
 
 
 if __name__ == "__main__":

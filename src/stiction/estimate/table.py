@@ -5,6 +5,7 @@ With coordinates c in units of their scatter, and of the lengths l over which th
 .. math:: q(c) = a + \sum_i b_i c_i + \sum_k w_k \, \exp \Bigl( -\sum_i \frac{(c_i - c_{ki})^2}{2 l_i^2} \Bigr) .
 """
 
+import hashlib
 import json
 import math
 from collections.abc import Mapping, Sequence
@@ -77,6 +78,20 @@ def _dot(left, right):
 def content() -> dict[str, Any]:
     """Content of the file."""
     return json.loads(FILE.read_text(encoding="utf-8"))
+
+
+def origin() -> str:
+    """From how many pairs of surfaces the file is learnt, and which file it is, in words."""
+    numbers = dict.fromkeys(("learn", "decide", "check"), 0)
+    for name, effort in content()["sets"].items():
+        if (use := name.partition("_")[0]) in numbers:
+            numbers[use] += effort["points"]
+    learnt, deciding, checking = numbers.values()
+    digest = hashlib.sha256(FILE.read_bytes()).hexdigest()[:8]
+    return (
+        f"Learnt from {learnt} drawn pairs of surfaces, {deciding} others decide the intervals and {checking} test "
+        f"them; table {digest}, with the contacts of this version."
+    )
 
 
 @cache

@@ -27,7 +27,7 @@ from stiction.estimate.question import (
     surface,
     temperature_of,
 )
-from stiction.estimate.table import content, known
+from stiction.estimate.table import content, known, origin
 from stiction.rounding import bounding
 
 #: Options of a device on a described surface: key in a file, metavar, help, default.
@@ -111,7 +111,7 @@ def in_short(files: Sequence[str]) -> Iterator[str]:
 
 def main(words: Sequence[str]) -> int:
     """Print the estimates for the words after ``stiction estimate``."""
-    parser = argparse.ArgumentParser("stiction estimate", "%(prog)s FILE ... | OPTIONS (-h lists them)", PURPOSE)
+    parser = argparse.ArgumentParser("stiction estimate", "%(prog)s FILE ... | OPTIONS (-h lists them)", PURPOSE, origin())
     add_options(parser)
     try:
         return run(parser.parse_args(words))
