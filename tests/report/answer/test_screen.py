@@ -360,7 +360,8 @@ def test_a_size_to_build_says_for_how_many_touchdowns_it_is(touchdowns, said):
 
 
 @pytest.mark.parametrize(
-    ("touchdowns", "head"), [(1, "P(stuck) at 275 µm"), (1000, "P(stuck) after 1000 touchdowns at 275 µm")]
+    ("touchdowns", "head"),
+    [(1, "P(stuck) at 275 µm"), (1000, "P(stuck) after 1000 touchdowns, each on other summits, at 275 µm")],
 )
 def test_the_head_of_a_fraction_has_the_touchdowns_that_it_counts(touchdowns, head):
     section = CANTILEVER | {"length_um": 275, "touchdowns": touchdowns}

@@ -73,7 +73,7 @@ def test_the_legend_of_a_life_names_what_is_drawn_alone(build, short):
     figure = life.figure({"C1": answers}, {"C1": to_build(build)})
     names = [text.get_text() for text in figure.legends[0].get_texts()]
     assert not any("hold" in name for name in names), "no row of a beam that is a length is about what holds it"
-    assert "the same with errors of inputs" not in names, "nothing stricter is known"
+    assert "with all that is stated inside" not in names, "nothing stricter is known"
     assert "stick: whether it then sticks" in names, "a limit that is too short keeps the colour of its question"
     red = [text for panel in figure.axes for text in panel.texts if text.get_color() == life._SHORT]
     assert bool(red) == short
@@ -90,7 +90,7 @@ def test_a_limit_with_errors_has_a_mark_at_its_size_and_is_the_first_number_of_i
     assert sum(text.get_text().startswith(f"{1e6 * size:.0f}\nexact: ") for text in panel.texts) == 1
     title = " ".join(panel.get_title(loc="left").split())
     assert title == f"C1: build 100 µm, but {1e6 * size:.0f} µm if water dries on it"
-    assert "the same with errors of inputs" in [text.get_text() for text in figure.legends[0].get_texts()]
+    assert "with all that is stated inside" in [text.get_text() for text in figure.legends[0].get_texts()]
 
 
 @pytest.mark.parametrize(("sought", "allowed"), [(LENGTH, 90.0), (FORCE, 110.0)])

@@ -111,7 +111,9 @@ def in_short(files: Sequence[str]) -> Iterator[str]:
 
 def main(words: Sequence[str]) -> int:
     """Print the estimates for the words after ``stiction estimate``."""
-    parser = argparse.ArgumentParser("stiction estimate", "%(prog)s FILE ... | OPTIONS (-h lists them)", PURPOSE, origin())
+    parser = argparse.ArgumentParser(
+        "stiction estimate", "%(prog)s FILE ... | OPTIONS (-h lists them)", PURPOSE, origin()
+    )
     add_options(parser)
     try:
         return run(parser.parse_args(words))

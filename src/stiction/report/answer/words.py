@@ -283,7 +283,9 @@ def of_airs(answer: Answer) -> list[dict[str, str]]:
     The air that decides has those in all of them, as pictures and controls have: its own alone can be less safe.
     """
     rows, sought, together = [], answer.sought, answer.together
-    after = f" after {grouped(answer.touchdowns)} touchdowns" * (answer.touchdowns > 1 and not answer.stays)
+    after = f" after {grouped(answer.touchdowns)} touchdowns, each on other summits," * (
+        answer.touchdowns > 1 and not answer.stays
+    )
     for air in answer.airs:
         decides = len(answer.airs) > 1 and air.humidity == together.humidity
         shown = together if decides else air

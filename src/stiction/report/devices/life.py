@@ -432,7 +432,7 @@ def _entries(marks):
     yield Patch(**_FORBIDDEN | {"alpha": 2 * _FORBIDDEN["alpha"]}, label="sizes beyond that to build")
     yield _sign(marker="o", color="0.3", label="dot or bar: one cause, inputs exact")
     if _DECIDES in {mark.marker for mark in marks}:
-        yield _sign(marker=_DECIDES, color=_SHORT, label="the same with errors of inputs")
+        yield _sign(marker=_DECIDES, color=_SHORT, label="with all that is stated inside")
     for marker, label in {"o": "interpolated between airs", _BELOW: "below this; no safe length known"}.items():
         if any(mark.marker == marker and not mark.filled for mark in marks):
             yield _sign(marker=marker, markerfacecolor="white", color="0.3", label=label)

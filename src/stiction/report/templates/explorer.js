@@ -439,7 +439,7 @@ function opened(number) {
     const curve = make(chart.svg, "path", {class: "curve"}), marks = axis.values.map(() => make(chart.svg, "circle", {r: 3, class: "mark"}));
     const dot = make(chart.svg, "circle", {r: 6, class: "here"});
     const safe = value => safeSize({...state, [axis.key]: value});
-    const describe = value => `At ${valueText(axis, value)}${together({...state, [axis.key]: value})}: ${data.words.bound} ${safeText(safe(value))} ${unit}. Small dots: computed.${Number.isFinite(noise()) ? ` Band: error between them, ± ${text(100 * noise(), 2)} %.` : ""}`;
+    const describe = value => `At ${valueText(axis, value)}${together({...state, [axis.key]: value})}: ${data.words.bound} ${safeText(safe(value))} ${unit}. Small dots: simulated; sizes to build between stated airs are interpolated.${Number.isFinite(noise()) ? ` Band: error between them, ± ${text(100 * noise(), 2)} %.` : ""}`;
     const caption = hover(chart, ends, value => describe(nearest(axis, value)), () => state[axis.key]);
     return () => {
       const points = axis.between ? spread(...ends).map(value => [value, safe(value)]) : [];
