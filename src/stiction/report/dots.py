@@ -14,8 +14,9 @@ from stiction.report.style import OUTLINED, PUBLISHED
 
 #: Height of a row of dots, of each further line of its label, and of everything else in a panel [in].
 ROW, LINE, AROUND = 0.24, 0.13, 0.75
-#: Least space between the texts of two rows, and height of a figure with room for all texts of a layout [in].
-_APART, _SPARE = 0.04, 20.0
+#: Least space between the texts of two rows, least height of a panel, whose title can wrap later, and height of a
+#: figure with room for all texts of a layout [in].
+_APART, _LEAST, _SPARE = 0.04, 0.6, 20.0
 #: Widths of the bar of a mark and of its ends [points].
 _THICK, _END = 3.5, 7
 #: Distance of a number from its mark, and width of one of its characters [in]. Part of a figure that its panels fill,
@@ -92,7 +93,7 @@ def heighten(figure: Figure, panels: Sequence[Axes]) -> None:
     figure.draw_without_rendering()
     heights = np.array([panel.bbox.height for panel in panels]) / figure.dpi
     without = heights - _SPARE * heights / heights.sum()
-    needed = np.maximum(heights - [_spare(panel) for panel in panels], without)
+    needed = np.maximum(heights - [_spare(panel) for panel in panels], np.maximum(without, _LEAST))
     figure.set_figheight(before + (needed - without).sum())
     grid.set_height_ratios(needed)
 
