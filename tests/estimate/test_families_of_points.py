@@ -67,8 +67,8 @@ NUMBERS = {"humid": {"slopes": [1.0, 2.0], "forces": [3.0]}, "dry": {"ratio": [f
     ("air", "change", "agree"),
     [
         ("humid", {}, True),
-        ("humid", {"slopes": [1.0002, 2.0]}, True),
-        ("humid", {"slopes": [1.0, 2.005]}, False),
+        ("humid", {"slopes": [1.00005, 2.0]}, True),
+        ("humid", {"slopes": [1.0, 2.0005]}, False),
         ("humid", {"slopes": [1.0]}, False),
         ("humid", {"more": [1.0]}, False),
         ("dry", {"full": [4.01]}, False),
